@@ -1,0 +1,6 @@
+//! Laws: pure functions of the matter they act on.
+
+pub mod boundary;
+pub mod kinetic_theory;
+pub mod restitution;
+pub mod source;

@@ -1,0 +1,121 @@
+//! Structure of arrays: one column per quantity, all in the same order.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use crate::space::Vector;
+
+/// Grains a thread gathers at a time: a few pages of each column.
+const GATHER_SPAN: usize = 4096;
+
+/// The columns of a gas; row `i` of each belongs to the same grain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Columns<V: Vector> {
+    /// Positions [length].
+    pub positions: Vec<V>,
+    /// Velocities [length/time].
+    pub velocities: Vec<V>,
+    /// Identities: given once, never reused.
+    pub ids: Vec<u32>,
+    /// Angular velocities [1/time], where grains are rough.
+    pub spins: Option<Vec<V::Spin>>,
+    /// Index into the list of species, where there are several.
+    pub species: Option<Vec<u8>>,
+}
+
+impl<V: Vector> Columns<V> {
+    /// Number of grains.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are no grains.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Columns of the same kind and length, of unspecified content.
+    pub fn like(other: &Self) -> Self {
+        let mut columns = Columns::default();
+        columns.match_shape(other);
+        columns
+    }
+
+    /// Takes the length and the optional columns of `other`; the content is unspecified.
+    pub fn match_shape(&mut self, other: &Self) {
+        let n = other.len();
+        self.positions.resize(n, V::ZERO);
+        self.velocities.resize(n, V::ZERO);
+        self.ids.resize(n, 0);
+        resize_optional(&mut self.spins, other.spins.is_some(), n);
+        resize_optional(&mut self.species, other.species.is_some(), n);
+    }
+
+    /// Keeps the first `n` grains.
+    pub fn truncate(&mut self, n: usize) {
+        self.positions.truncate(n);
+        self.velocities.truncate(n);
+        self.ids.truncate(n);
+        if let Some(spins) = &mut self.spins {
+            spins.truncate(n);
+        }
+        if let Some(species) = &mut self.species {
+            species.truncate(n);
+        }
+    }
+
+    /// Puts a grain at row `row`, moving later ones back.
+    pub fn insert(&mut self, row: usize, position: V, velocity: V, id: u32) {
+        self.positions.insert(row, position);
+        self.velocities.insert(row, velocity);
+        self.ids.insert(row, id);
+        if let Some(spins) = &mut self.spins {
+            spins.insert(row, V::Spin::default());
+        }
+        if let Some(species) = &mut self.species {
+            species.insert(row, 0);
+        }
+    }
+
+    /// Fills row `k` with row `order[k]` of `source`, for all `k`; both have the same shape.
+    pub fn gather(&mut self, source: &Self, order: &[AtomicU32]) {
+        self.positions
+            .par_chunks_mut(GATHER_SPAN)
+            .zip(self.velocities.par_chunks_mut(GATHER_SPAN))
+            .zip(self.ids.par_chunks_mut(GATHER_SPAN))
+            .zip(order.par_chunks(GATHER_SPAN))
+            .for_each(|(((positions, velocities), ids), order)| {
+                for (k, from) in order.iter().enumerate() {
+                    let from = from.load(Relaxed) as usize;
+                    positions[k] = source.positions[from];
+                    velocities[k] = source.velocities[from];
+                    ids[k] = source.ids[from];
+                }
+            });
+        gather_optional(&mut self.spins, &source.spins, order);
+        gather_optional(&mut self.species, &source.species, order);
+    }
+}
+
+fn resize_optional<T: Copy + Default>(column: &mut Option<Vec<T>>, wanted: bool, n: usize) {
+    if wanted {
+        column.get_or_insert_default().resize(n, T::default());
+    } else {
+        *column = None;
+    }
+}
+
+fn gather_optional<T: Copy + Send + Sync>(
+    column: &mut Option<Vec<T>>,
+    source: &Option<Vec<T>>,
+    order: &[AtomicU32],
+) {
+    if let (Some(column), Some(source)) = (column, source) {
+        column
+            .par_iter_mut()
+            .with_min_len(GATHER_SPAN)
+            .zip(order)
+            .for_each(|(value, from)| *value = source[from.load(Relaxed) as usize]);
+    }
+}

@@ -1,0 +1,198 @@
+//! The cell-sorted container: the common currency of the program.
+//!
+//! Initial states make a gas, engines advance it, observers read it, logs store it.
+
+use std::ops::Range;
+
+use super::clock::Clock;
+use super::columns::Columns;
+use super::grain::Grain;
+use super::grid::Grid;
+use super::sort::CountingSort;
+use crate::space::Vector;
+
+/// Grains in cell order, with the box that they live in and their time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gas<V: Vector> {
+    /// Diameter and mass of every grain.
+    pub grain: Grain,
+    /// Simulated time [time].
+    pub clock: Clock,
+    grid: Grid<V>,
+    columns: Columns<V>,
+    /// `[cell + 1]`: the grains of cell c stand in rows `offsets[c] .. offsets[c + 1]`.
+    offsets: Vec<u32>,
+    next_id: u32,
+}
+
+/// What a sort needs beside the gas: a second set of columns, each grain's cell, counts.
+#[derive(Debug, Default)]
+pub struct SortSpace<V: Vector> {
+    /// Columns that the next sorted state is written to, or read from.
+    pub spare: Columns<V>,
+    /// `[grain]`: the cell each grain goes to; [`super::sort::REMOVED`] takes it out.
+    pub cells: Vec<u32>,
+    sort: CountingSort,
+}
+
+impl<V: Vector> SortSpace<V> {
+    /// Takes the shape of `gas`; contents are unspecified.
+    pub fn prepare(&mut self, gas: &Gas<V>) {
+        self.spare.match_shape(&gas.columns);
+        self.cells.resize(gas.len(), 0);
+    }
+}
+
+impl<V: Vector> Gas<V> {
+    /// An empty box at time 0.
+    pub fn empty(grid: Grid<V>, grain: Grain) -> Self {
+        let offsets = vec![0; grid.number_of_cells() + 1];
+        Gas { grain, clock: Clock::default(), grid, columns: Columns::default(), offsets, next_id: 0 }
+    }
+
+    /// Grains at `positions` with `velocities` `[grain]`, numbered in the given order, at time 0.
+    pub fn new(grid: Grid<V>, grain: Grain, positions: Vec<V>, velocities: Vec<V>) -> Self {
+        assert_eq!(positions.len(), velocities.len(), "a velocity for every position");
+        let next_id = u32::try_from(positions.len()).expect("the scenario reader bounds the count");
+        let columns =
+            Columns { positions, velocities, ids: (0..next_id).collect(), spins: None, species: None };
+        Self::restored(grid, grain, columns, Clock::default(), next_id)
+    }
+
+    /// A gas from saved columns. Rows that already are in cell order keep their order.
+    pub fn restored(grid: Grid<V>, grain: Grain, columns: Columns<V>, clock: Clock, next_id: u32) -> Self {
+        let mut gas = Gas { clock, next_id, ..Gas::empty(grid, grain) };
+        gas.columns = columns;
+        let mut space = SortSpace::default();
+        space.prepare(&gas);
+        for (cell, &position) in space.cells.iter_mut().zip(&gas.columns.positions) {
+            *cell = gas.grid.cell_of(position);
+        }
+        gas.sort_through(&mut space);
+        gas
+    }
+
+    /// Number of grains.
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+    /// Whether there are no grains.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+    /// Simulated time [time].
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+    /// The box and its cells.
+    pub fn grid(&self) -> &Grid<V> {
+        &self.grid
+    }
+    /// Positions [length], `[grain]` in cell order.
+    pub fn positions(&self) -> &[V] {
+        &self.columns.positions
+    }
+    /// Velocities [length/time], `[grain]` in cell order.
+    pub fn velocities(&self) -> &[V] {
+        &self.columns.velocities
+    }
+    /// Identities `[grain]` in cell order.
+    pub fn ids(&self) -> &[u32] {
+        &self.columns.ids
+    }
+    /// All columns, in cell order.
+    pub fn columns(&self) -> &Columns<V> {
+        &self.columns
+    }
+    /// The identity that the next new grain will get; also how many there ever were.
+    pub fn next_id(&self) -> u32 {
+        self.next_id
+    }
+    /// Where each cell's rows begin, `[cell + 1]`.
+    pub fn offsets(&self) -> &[u32] {
+        &self.offsets
+    }
+    /// The rows of `cell`.
+    pub fn rows(&self, cell: u32) -> Range<usize> {
+        self.offsets[cell as usize] as usize..self.offsets[cell as usize + 1] as usize
+    }
+    /// Number of grains in `cell`.
+    pub fn occupancy(&self, cell: u32) -> u32 {
+        self.offsets[cell as usize + 1] - self.offsets[cell as usize]
+    }
+    /// The largest number of grains in any cell.
+    pub fn largest_occupancy(&self) -> u32 {
+        self.offsets.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0)
+    }
+
+    /// Velocities to be changed in place; positions and cells stay.
+    pub fn velocities_mut(&mut self) -> &mut [V] {
+        &mut self.columns.velocities
+    }
+
+    /// The grid, the offsets, and the columns to be changed by an engine, which then
+    /// owes a sort ([`Gas::sort_through`] or [`Gas::sort_from_spare`]).
+    pub fn parts_mut(&mut self) -> (&Grid<V>, &[u32], &mut Columns<V>) {
+        (&self.grid, &self.offsets, &mut self.columns)
+    }
+
+    /// Adds a grain at the end of its cell and returns its identity.
+    pub fn insert(&mut self, position: V, velocity: V) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        let cell = self.grid.cell_of(position) as usize;
+        self.columns.insert(self.offsets[cell + 1] as usize, position, velocity, id);
+        for offset in &mut self.offsets[cell + 1..] {
+            *offset += 1;
+        }
+        id
+    }
+
+    /// Brings the own columns into the order of `space.cells`, through the spare ones.
+    pub fn sort_through(&mut self, space: &mut SortSpace<V>) {
+        let order = space.sort.order(&space.cells[..self.columns.len()], &mut self.offsets);
+        space.spare.match_shape(&self.columns);
+        space.spare.truncate(order.len());
+        space.spare.gather(&self.columns, order);
+        std::mem::swap(&mut self.columns, &mut space.spare);
+    }
+
+    /// Takes over the spare columns, written by an engine row by row, in the order of `space.cells`.
+    pub fn sort_from_spare(&mut self, space: &mut SortSpace<V>) {
+        let order = space.sort.order(&space.cells[..space.spare.len()], &mut self.offsets);
+        self.columns.truncate(order.len());
+        self.columns.gather(&space.spare, order);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    fn gas() -> Gas<DVec2> {
+        let grid = Grid::new(DVec2::ZERO, DVec2::splat(4.0), &[4, 4], &[true, true]);
+        let positions =
+            vec![DVec2::new(3.5, 3.5), DVec2::new(0.5, 0.5), DVec2::new(1.5, 0.5), DVec2::new(0.6, 0.6)];
+        let velocities = (0..4).map(|k| DVec2::splat(f64::from(k))).collect();
+        Gas::new(grid, Grain { diameter: 1.0, mass: 1.0 }, positions, velocities)
+    }
+
+    #[test]
+    fn grains_stand_in_cell_order() {
+        let gas = gas();
+        assert_eq!(gas.ids(), [1, 3, 2, 0]);
+        assert_eq!(gas.rows(0), 0..2);
+        assert_eq!(gas.occupancy(15), 1);
+        assert_eq!(gas.velocities()[1], DVec2::splat(3.0));
+    }
+
+    #[test]
+    fn an_inserted_grain_stands_last_in_its_cell() {
+        let mut gas = gas();
+        let id = gas.insert(DVec2::new(0.1, 0.1), DVec2::ZERO);
+        assert_eq!((id, gas.next_id()), (4, 5));
+        assert_eq!(gas.ids(), [1, 3, 4, 2, 0]);
+        assert_eq!(gas.rows(1), 3..4);
+    }
+}

@@ -1,0 +1,111 @@
+//! What a measure is, and the forms its results take.
+
+use crate::engine::report::Totals;
+use crate::matter::gas::Gas;
+use crate::space::Vector;
+
+/// The state of a run at a step end, as a measure sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot<'a, V: Vector> {
+    /// The grains.
+    pub gas: &'a Gas<V>,
+    /// What happened since the start of the run.
+    pub totals: &'a Totals<V>,
+}
+
+/// When a measure wants to be shown the gas, beside recordings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cadence {
+    /// Never.
+    Recordings,
+    /// At 400 places spread evenly over the run's limit.
+    Spread,
+    /// Every so much time [time].
+    Every(f64),
+}
+
+/// A quantity with its unit, as it stands in the header of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name, in snake case.
+    pub name: String,
+    /// Unit, made of the powers of mass, length and time; `1` for pure numbers.
+    pub unit: Dimension,
+}
+
+/// Powers of mass, length and time of a physical quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dimension {
+    /// Power of mass.
+    pub mass: i8,
+    /// Power of length.
+    pub length: i8,
+    /// Power of time.
+    pub time: i8,
+}
+
+/// A table at one time: a profile, a spectrum, a distribution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// The measure's name, such as `velocity-profile`.
+    pub name: String,
+    /// When it was taken, or when its average ended [time].
+    pub time: f64,
+    /// What the columns hold; the first is the abscissa.
+    pub columns: Vec<Column>,
+    /// `[column][row]`.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// A figure of the summary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Name, in snake case.
+    pub name: String,
+    /// The value; `None` where the run was too short to have one.
+    pub value: Option<f64>,
+    /// Its standard error, where there is one.
+    pub standard_error: Option<f64>,
+}
+
+/// One measure of a run.
+pub trait Measure<V: Vector>: Send {
+    /// The name that scenarios use, in kebab case.
+    fn name(&self) -> &'static str;
+
+    /// When it wants to be shown the gas by [`Measure::sample`].
+    fn cadence(&self) -> Cadence {
+        Cadence::Recordings
+    }
+
+    /// Looks at the gas at one of its times.
+    fn sample(&mut self, _snapshot: &Snapshot<'_, V>) {}
+
+    /// Columns of the series that it fills at every recording.
+    fn columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+
+    /// Values of these columns now; NaN where one is not defined.
+    fn values(&mut self, _snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Profiles of this moment, stored at every recording.
+    fn profiles(&mut self, _snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
+        Vec::new()
+    }
+
+    /// Profiles and figures of the whole run, from samples at times from `from` on.
+    fn conclusion(&self, _snapshot: &Snapshot<'_, V>, _from: f64) -> (Vec<Profile>, Vec<Figure>) {
+        (Vec::new(), Vec::new())
+    }
+
+    /// What it remembers, as numbers: part of a saved state.
+    fn memory(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Takes over what [`Measure::memory`] gave.
+    fn recall(&mut self, _memory: &[f64]) {}
+}

@@ -1,0 +1,250 @@
+//! The checked scenario.
+
+use glam::{DVec2, DVec3};
+
+use crate::law::boundary::Boundary;
+use crate::law::restitution::RestitutionLaw;
+use crate::law::source::Source;
+use crate::matter::grain::Grain;
+
+/// A scenario in two or three dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyScenario {
+    /// Disks in a plane.
+    Two(Scenario<DVec2>),
+    /// Spheres in space.
+    Three(Scenario<DVec3>),
+}
+
+/// A checked scenario in the space of `V`.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Scenario<V> {
+    /// The file's stem, or the built-in name.
+    pub name: String,
+    /// Title for reports.
+    pub title: String,
+    /// The scenario as TOML text, with every `--set` applied: running it gives the same run.
+    pub source_text: String,
+    /// Seed of all random streams, below 2⁶³.
+    pub seed: u64,
+    /// Constant acceleration of every grain [length/time²].
+    pub gravity: V,
+    /// The engine and its parameters.
+    pub engine: EngineChoice,
+    /// `domain.size` [length].
+    pub size: V,
+    /// Lower corner of the grid: below zero only by the amplitude of a vibrating wall [length].
+    pub grid_origin: V,
+    /// Sides of the grid [length].
+    pub grid_size: V,
+    /// Cells along each axis of the grid; 1 beyond D.
+    pub cells: [u32; 3],
+    /// The sides of the box.
+    pub boundary: Boundary<V>,
+    /// Diameter and mass of a grain.
+    pub grain: Grain,
+    /// Restitution of grain–grain collisions.
+    pub restitution: RestitutionLaw,
+    /// Grains at the start.
+    pub count: u32,
+    /// How positions and velocities begin.
+    pub initial: Initial,
+    /// The pouring source, if any.
+    pub source: Option<Source<V>>,
+    /// When the run ends.
+    pub run: RunLimits,
+    /// What is recorded.
+    pub record: RecordPlan,
+    /// Names of the units, for labels.
+    pub units: Units,
+}
+
+/// The engine and its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineChoice {
+    /// Which engine.
+    pub kind: EngineKind,
+    /// How the time step is chosen.
+    pub time_step: TimeStep,
+    /// Where the Enskog factor takes its density from (CBA, HSMC).
+    pub enskog_factor: EnskogFactor,
+    /// How the collisional transfer of momentum is made (CBA, HSMC).
+    pub transfer: Transfer,
+    /// Rules of HSMC.
+    pub hsmc: HsmcRules,
+}
+
+/// The engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EngineKind {
+    /// Direct simulation Monte Carlo (Bird; Nanbu's fixed-step form).
+    Dsmc,
+    /// Consistent Boltzmann algorithm (Alexander, Garcia and Alder 1995).
+    Cba,
+    /// Hybrid simulation Monte Carlo (Müller 2001).
+    Hsmc,
+}
+
+impl EngineKind {
+    /// Every engine.
+    pub const ALL: [EngineKind; 3] = [EngineKind::Dsmc, EngineKind::Cba, EngineKind::Hsmc];
+
+    /// The name used in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Dsmc => "dsmc",
+            EngineKind::Cba => "cba",
+            EngineKind::Hsmc => "hsmc",
+        }
+    }
+}
+
+/// How the length of a step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeStep {
+    /// Always this long [time].
+    Fixed(f64),
+    /// This many collisions per particle and step, in the local frame of each cell.
+    CollisionsPerParticle(f64),
+    /// This fraction of a cell at the largest speed.
+    Crossing(f64),
+}
+
+/// Where the Enskog factor g(ν) takes its density from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnskogFactor {
+    /// ν = N_c V_p/V_c of the cell.
+    Local,
+    /// ν = (N_c − ½) V_p/V_c.
+    HalfGrain,
+    /// ν of the 3ᴰ cells around.
+    Smoothed,
+}
+
+/// How a collision displaces its partners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transfer {
+    /// By d along the own change of momentum (Alexander et al. 1995): exact for r = 1.
+    MomentumChange,
+    /// By c(r) d along the relative velocity after the collision: the pressure of Enskog theory for every r.
+    Corrected,
+}
+
+/// Rules of HSMC beside those of CBA.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HsmcRules {
+    /// ν_max of a full cell.
+    pub maximum_volume_fraction: f64,
+    /// Restitution of cell–cell collisions, resolved: in [0, 1].
+    pub cell_restitution: f64,
+    /// Sweeps of cell–cell collisions per step, at least 1.
+    pub sweeps: u32,
+    /// Who may enter a cell.
+    pub admission: Admission,
+    /// When a displacement is made.
+    pub displacement: DisplacementRule,
+}
+
+/// Who may enter a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Admission {
+    /// Never more than the capacity; departures are credited; surplus arrivals lose by rank.
+    Strict,
+    /// Open to any number when below the capacity at the start of the move (Müller 2001).
+    Thesis,
+}
+
+/// When a displacement is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DisplacementRule {
+    /// Both partners or none; not from full cells, not into full cells, not through walls.
+    Paired,
+    /// Not from full cells (Müller 2001); targets are not looked at, walls are respected.
+    Thesis,
+}
+
+/// How positions and velocities begin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Initial {
+    /// Where grains are.
+    pub positions: InitialPositions,
+    /// How they move.
+    pub velocities: InitialVelocities,
+    /// Collisions per particle before t = 0, elastic and undriven; 0 for none.
+    pub equilibrate: f64,
+}
+
+/// Where grains are at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InitialPositions {
+    /// Independent places.
+    Random,
+    /// Counts per cell that differ by at most one, random places inside.
+    Lattice,
+    /// The last state of a log, with its velocities.
+    Log(std::path::PathBuf),
+}
+
+/// How grains move at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InitialVelocities {
+    /// Maxwellian at this temperature [mass·length²/time²].
+    Maxwell(f64),
+    /// Each component uniform in [−w, w], this w [length/time]; the temperature m w²/3 is met exactly.
+    Uniform(f64),
+    /// Not at all.
+    Rest,
+}
+
+/// When a run ends: at the first limit reached. At least one is set.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RunLimits {
+    /// Simulated time [time].
+    pub time: Option<f64>,
+    /// Steps.
+    pub steps: Option<u64>,
+    /// Collisions per particle, Σ 2ΔC/N.
+    pub collisions_per_particle: Option<f64>,
+    /// Time after the last poured grain [time].
+    pub rest: Option<f64>,
+}
+
+/// What is recorded, and how often.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordPlan {
+    /// When recordings are made.
+    pub spacing: Spacing,
+    /// Points of a frame: at most this many, `None` for all.
+    pub points: Option<u32>,
+    /// Names of the measures whose series and profiles are stored; `None` for all that apply.
+    pub measures: Option<Vec<String>>,
+    /// Full-precision states during the run, beside the one at the end.
+    pub states: u32,
+    /// Steady figures are taken from this time on [time]; `None` for the second half.
+    pub from: Option<f64>,
+}
+
+/// When recordings are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spacing {
+    /// This many, spread evenly over the limit that comes first; one at the start beside them.
+    Frames(u32),
+    /// This many, spread evenly in the logarithm of time or collisions; one at the start beside them.
+    LogFrames(u32),
+    /// One every so much time [time].
+    Every(f64),
+    /// Only at the start and at the end.
+    Ends,
+}
+
+/// Names of the units, for labels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Units {
+    /// Unit of length.
+    pub length: String,
+    /// Unit of mass.
+    pub mass: String,
+    /// Unit of time.
+    pub time: String,
+}
