@@ -1,1 +1,4 @@
-//! The record of a run.
+//! The record of a run: what a log holds, how it is written and read.
+
+pub mod contents;
+pub mod state;

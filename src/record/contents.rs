@@ -1,0 +1,52 @@
+//! What a log holds, in memory: the only thing that reports and comparisons look at.
+
+use std::collections::BTreeMap;
+
+use crate::observe::measure::{Column, Profile};
+
+/// The contents of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunLog {
+    /// Version, numerics, seed, engine, units and the like, as `key = value`.
+    pub metadata: BTreeMap<String, String>,
+    /// The scenario as TOML text.
+    pub scenario: String,
+    /// Columns of the series; the first is `time`.
+    pub columns: Vec<Column>,
+    /// `[recording][column]`.
+    pub series: Vec<Vec<f64>>,
+    /// The state hash at every recording, in hexadecimal digits.
+    pub state_hashes: Vec<String>,
+    /// All profiles, in the order they were written.
+    pub profiles: Vec<Profile>,
+    /// Pictures of the grains, one per recording.
+    pub frames: Vec<Frame>,
+    /// The box and its walls.
+    pub walls: Option<Walls>,
+}
+
+/// Where the grains are at one time, at the precision of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Simulated time [time].
+    pub time: f64,
+    /// Grains in the gas; more than there are points when the frame was thinned.
+    pub grains: u64,
+    /// Positions [length]; z = 0 in 2D.
+    pub positions: Vec<[f32; 3]>,
+    /// Velocities [length/time]; z = 0 in 2D.
+    pub velocities: Vec<[f32; 3]>,
+    /// Identities.
+    pub ids: Vec<u32>,
+}
+
+/// The box and which of its sides are walls.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Walls {
+    /// Lower corner [length]; z = 0 in 2D.
+    pub lower: [f64; 3],
+    /// Upper corner [length]; z = 0 in 2D.
+    pub upper: [f64; 3],
+    /// `[axis][side]`: `wall`, `open`, `periodic` or, for an axis that does not exist, empty.
+    pub sides: [[String; 2]; 3],
+}
