@@ -9,14 +9,34 @@ use report::StepReport;
 
 /// Something that advances a gas by one step.
 pub trait Engine<V: Vector>: Send {
-    /// One step.
-    fn step(&mut self, gas: &mut Gas<V>) -> Result<StepReport<V>, EngineError>;
+    /// One step. `laps` is told which verb of the algorithm begins.
+    fn step(&mut self, gas: &mut Gas<V>, laps: &mut dyn Laps) -> Result<StepReport<V>, EngineError>;
 
     /// Everything beside the gas that the next step reads, as numbers to be saved.
     fn state(&self) -> EngineState;
 
     /// Takes over what [`Engine::state`] gave.
     fn restore(&mut self, state: &EngineState);
+
+    /// Somebody has changed velocities from outside: what the engine knew of them is void.
+    fn forget_pace(&mut self);
+
+    /// Grains that make a cell full, for engines with an excluded volume.
+    fn capacity(&self, gas: &Gas<V>) -> Option<u32>;
+}
+
+/// Told of each verb of the algorithm as it begins: a timer in a run, nothing in a test.
+pub trait Laps {
+    /// `verb` begins, and with it the last one ends.
+    fn start(&mut self, verb: &'static str);
+}
+
+/// Nobody keeps time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoLaps;
+
+impl Laps for NoLaps {
+    fn start(&mut self, _verb: &'static str) {}
 }
 
 /// What the next step reads beside the gas.

@@ -2,6 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
+pub use crate::engine::stochastic::rules::{
+    Admission, DisplacementRule, EnskogFactor, HsmcRules, TimeStep, Transfer,
+};
 use crate::law::boundary::Boundary;
 use crate::law::restitution::RestitutionLaw;
 use crate::law::source::Source;
@@ -49,6 +52,58 @@ pub struct Scenario<V> {
     /// Grains at the start.
     pub count: u32,
     /// How positions and velocities begin.
+    pub initial: Initial,
+    /// The pouring source, if any.
+    pub source: Option<Source<V>>,
+    /// When the run ends.
+    pub run: RunLimits,
+    /// What is recorded.
+    pub record: RecordPlan,
+    /// Names of the units, for labels.
+    pub units: Units,
+}
+
+/// The engine and its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineChoice {
+    /// Which engine.
+    pub kind: EngineKind,
+    /// How the time step is chosen.
+    pub time_step: TimeStep,
+    /// Where the Enskog factor takes its density from (CBA, HSMC).
+    pub enskog_factor: EnskogFactor,
+    /// How the collisional transfer of momentum is made (CBA, HSMC).
+    pub transfer: Transfer,
+    /// Rules of HSMC.
+    pub hsmc: HsmcRules,
+}
+
+/// The engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EngineKind {
+    /// Direct simulation Monte Carlo (Bird; Nanbu's fixed-step form).
+    Dsmc,
+    /// Consistent Boltzmann algorithm (Alexander, Garcia and Alder 1995).
+    Cba,
+    /// Hybrid simulation Monte Carlo (Müller 2001).
+    Hsmc,
+}
+
+impl EngineKind {
+    /// Every engine.
+    pub const ALL: [EngineKind; 3] = [EngineKind::Dsmc, EngineKind::Cba, EngineKind::Hsmc];
+
+    /// The name used in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Dsmc => "dsmc",
+            EngineKind::Cba => "cba",
+            EngineKind::Hsmc => "hsmc",
+        }
+    }
+}
+
+/// How positions and velocities begin.
     pub initial: Initial,
     /// The pouring source, if any.
     pub source: Option<Source<V>>,

@@ -1,1 +1,146 @@
-//! The stochastic engines.
+//! The stochastic engines: DSMC, CBA and HSMC on cell-sorted grains.
+//!
+//! A step begins and ends in cell order and has one sort, at its end. It is the thesis' cycle of
+//! advection and collisions, cut between the two: collide, then move.
+
+mod admission;
+mod blocks;
+mod cell_collisions;
+mod cell_pairs;
+mod coloured_pass;
+mod enskog;
+mod excluded_volume;
+mod flight;
+mod gas_pass;
+pub mod laws;
+pub mod rules;
+mod tally;
+mod time_step;
+
+use crate::engine::report::StepReport;
+use crate::engine::{Engine, EngineError, EngineState, Laps};
+use crate::law::restitution::Restitution;
+use crate::matter::gas::{Gas, SortSpace};
+use crate::space::Vector;
+use excluded_volume::ExcludedVolume;
+use laws::Laws;
+use rules::{HsmcRules, TimeStep};
+use tally::Tally;
+use time_step::{pace, time_step};
+
+/// A stochastic engine: DSMC or CBA, by its laws, and HSMC when it has an excluded volume.
+#[derive(Debug)]
+pub struct Stochastic<V: Vector, R: Restitution> {
+    laws: Laws<V, R>,
+    time_step: TimeStep,
+    excluded_volume: Option<ExcludedVolume<V>>,
+    space: SortSpace<V>,
+    state: EngineState,
+}
+
+/// One step: its number, beginning and length.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    number: u64,
+    start: f64,
+    duration: f64,
+}
+
+impl<V: Vector, R: Restitution> Stochastic<V, R> {
+    /// DSMC where `laws.dense` is `None`, CBA where it is not, HSMC with `excluded_volume`.
+    pub fn new(laws: Laws<V, R>, time_step: TimeStep, excluded_volume: Option<HsmcRules>) -> Self {
+        Stochastic {
+            laws,
+            time_step,
+            excluded_volume: excluded_volume.map(ExcludedVolume::new),
+            space: SortSpace::default(),
+            state: EngineState { step: 0, largest_speed: -1.0, collision_rate: -1.0 },
+        }
+    }
+
+    /// DSMC and CBA: pair collisions with displacement and the move, fused over each cell; one sort.
+    fn gas_step(&mut self, gas: &mut Gas<V>, step: Step, laps: &mut dyn Laps) -> Tally<V> {
+        laps.start("pair collisions and move");
+        let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step);
+        laps.start("sort");
+        gas.sort_through(&mut self.space);
+        tally
+    }
+
+    /// HSMC: cell–cell collisions, pair collisions with displacement, moves and admission; one sort.
+    fn hybrid_step(&mut self, gas: &mut Gas<V>, step: Step, laps: &mut dyn Laps) -> Tally<V> {
+        let Some(volume) = &mut self.excluded_volume else { return Tally::default() };
+        let mut tally = Tally::default();
+        laps.start("cell collisions");
+        volume.collide_cells(&self.laws, gas, step, &mut tally);
+        laps.start("pair collisions");
+        volume.collide_pairs(&self.laws, gas, step, &mut tally);
+        laps.start("move");
+        volume.advect(&self.laws, gas, &mut self.space, step, &mut tally);
+        laps.start("admission");
+        volume.admit(&self.laws, gas, &mut self.space, step, &mut tally);
+        laps.start("sort");
+        gas.sort_from_spare(&mut self.space);
+        tally
+    }
+}
+
+impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
+    fn step(&mut self, gas: &mut Gas<V>, laps: &mut dyn Laps) -> Result<StepReport<V>, EngineError> {
+        laps.start("time step");
+        if self.state.largest_speed < 0.0 {
+            let tally = time_step::measure(&self.laws, gas);
+            self.set_pace(gas, &tally);
+        }
+        let jumps_matter = self.excluded_volume.is_some() || self.laws.has_faces() || self.laws.has_gravity();
+        let (duration, capped) = time_step(self.time_step, &self.laws, jumps_matter, gas, &self.state)?;
+        let step = Step { number: self.state.step, start: gas.time(), duration };
+        self.space.prepare(gas);
+        let tally = match self.excluded_volume {
+            None => self.gas_step(gas, step, laps),
+            Some(_) => self.hybrid_step(gas, step, laps),
+        };
+        gas.clock.advance(duration);
+        self.state.step += 1;
+        self.set_pace(gas, &tally);
+        if !tally.sum_of_squares.is_finite() {
+            return Err(self.not_finite(gas));
+        }
+        Ok(StepReport { duration, capped, counts: tally.counts })
+    }
+
+    fn state(&self) -> EngineState {
+        self.state.clone()
+    }
+
+    fn restore(&mut self, state: &EngineState) {
+        self.state = state.clone();
+    }
+
+    fn forget_pace(&mut self) {
+        (self.state.largest_speed, self.state.collision_rate) = (-1.0, -1.0);
+    }
+
+    fn capacity(&self, gas: &Gas<V>) -> Option<u32> {
+        self.excluded_volume.as_ref().map(|volume| volume.capacity(gas))
+    }
+}
+
+impl<V: Vector, R: Restitution> Stochastic<V, R> {
+    fn set_pace(&mut self, gas: &Gas<V>, tally: &Tally<V>) {
+        (self.state.largest_speed, self.state.collision_rate) = pace(&self.laws, gas, tally);
+    }
+
+    /// Names the first grain that is not where a number can say.
+    fn not_finite(&self, gas: &Gas<V>) -> EngineError {
+        let lost = |row: &usize| !(gas.positions()[*row].is_finite() && gas.velocities()[*row].is_finite());
+        let row = (0..gas.len()).find(lost).unwrap_or(0);
+        EngineError::NotFinite {
+            id: gas.ids().get(row).copied().unwrap_or(0),
+            cell: gas.positions().get(row).map_or(0, |&position| gas.grid().cell_of(position)),
+            step: self.state.step,
+            seed: self.laws.seed,
+            time: gas.time(),
+        }
+    }
+}

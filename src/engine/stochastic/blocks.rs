@@ -1,0 +1,73 @@
+//! Contiguous spans of cells, each with its own rows of the columns, for threads to share.
+
+use std::ops::Range;
+
+use crate::matter::columns::Columns;
+use crate::space::Vector;
+
+/// Cells of a block. It is fixed: sums are added block by block, so it is part of the bits.
+const CELLS_PER_BLOCK: usize = 256;
+
+/// A span of cells and the rows that belong to it.
+#[derive(Debug)]
+pub(crate) struct Block<'a, V: Vector> {
+    /// The cells.
+    pub(crate) cells: Range<u32>,
+    /// The first row.
+    pub(crate) first_row: usize,
+    /// Positions of the rows [length].
+    pub(crate) positions: &'a mut [V],
+    /// Velocities of the rows [length/time].
+    pub(crate) velocities: &'a mut [V],
+    /// Identities of the rows.
+    pub(crate) ids: &'a [u32],
+    /// The cell each row goes to.
+    pub(crate) targets: &'a mut [u32],
+}
+
+/// Cuts all cells into blocks of a fixed number of cells.
+pub(crate) fn blocks<'a, V: Vector>(
+    offsets: &[u32],
+    columns: &'a mut Columns<V>,
+    targets: &'a mut [u32],
+) -> Vec<Block<'a, V>> {
+    let cells = offsets.len() - 1;
+    let starts = (0..cells).step_by(CELLS_PER_BLOCK);
+    let spans = starts.map(|first| first as u32..(first + CELLS_PER_BLOCK).min(cells) as u32);
+    cut(spans, offsets, columns, targets)
+}
+
+/// Cuts the columns at the given contiguous spans of cells, the first of which starts at cell 0.
+pub(crate) fn cut<'a, V: Vector>(
+    spans: impl Iterator<Item = Range<u32>>,
+    offsets: &[u32],
+    columns: &'a mut Columns<V>,
+    targets: &'a mut [u32],
+) -> Vec<Block<'a, V>> {
+    let Columns { positions, velocities, ids, .. } = columns;
+    let (mut positions, mut velocities) = (positions.as_mut_slice(), velocities.as_mut_slice());
+    let (mut ids, mut targets) = (ids.as_slice(), targets);
+    spans
+        .map(|cells| {
+            let first_row = offsets[cells.start as usize] as usize;
+            let rows = offsets[cells.end as usize] as usize - first_row;
+            Block {
+                cells,
+                first_row,
+                positions: positions.split_off_mut(..rows).expect("offsets count the rows"),
+                velocities: velocities.split_off_mut(..rows).expect("offsets count the rows"),
+                ids: ids.split_off(..rows).expect("offsets count the rows"),
+                targets: targets.split_off_mut(..rows).expect("offsets count the rows"),
+            }
+        })
+        .collect()
+}
+
+impl<V: Vector> Block<'_, V> {
+    /// The rows of `cell`, counted from the start of the block.
+    #[inline(always)]
+    pub(crate) fn rows(&self, cell: u32, offsets: &[u32]) -> Range<usize> {
+        let cell = cell as usize;
+        offsets[cell] as usize - self.first_row..offsets[cell + 1] as usize - self.first_row
+    }
+}
