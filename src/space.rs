@@ -38,6 +38,10 @@ pub trait Vector:
     const RANDOM_CLOSE_PACKING: f64;
     /// The densest lattice: volume fraction 0.9069 in 2D, 0.7405 in 3D.
     const DENSEST_PACKING: f64;
+    /// Largest local volume fraction that enters g(ν) in CBA: the formula is singular at ν = 1.
+    const LARGEST_LOCAL_FRACTION: f64;
+    /// The same in HSMC, where no cell gets denser than random close packing.
+    const LARGEST_LOCAL_FRACTION_HSMC: f64;
     /// Mean relative speed of two grains of a Maxwell gas, in units of √(T/m): √π in 2D, 4/√π in 3D.
     const MEAN_RELATIVE_SPEED: f64;
     /// Names of the axes, in order.
@@ -103,6 +107,8 @@ impl Vector for DVec2 {
     const UNIT_SPHERE_VOLUME: f64 = std::f64::consts::FRAC_PI_4;
     const RANDOM_CLOSE_PACKING: f64 = 0.82;
     const DENSEST_PACKING: f64 = 0.906_899_682_117_109;
+    const LARGEST_LOCAL_FRACTION: f64 = 0.9;
+    const LARGEST_LOCAL_FRACTION_HSMC: f64 = 0.9;
     const MEAN_RELATIVE_SPEED: f64 = 1.772_453_850_905_516;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y"];
 
@@ -158,6 +164,8 @@ impl Vector for DVec3 {
     const UNIT_SPHERE_VOLUME: f64 = std::f64::consts::FRAC_PI_6;
     const RANDOM_CLOSE_PACKING: f64 = 0.64;
     const DENSEST_PACKING: f64 = 0.740_480_489_693_061;
+    const LARGEST_LOCAL_FRACTION: f64 = 0.7;
+    const LARGEST_LOCAL_FRACTION_HSMC: f64 = 0.64;
     const MEAN_RELATIVE_SPEED: f64 = 2.256_758_334_191_025;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y", "z"];
 

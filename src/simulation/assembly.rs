@@ -1,0 +1,72 @@
+//! Puts an engine together from a scenario.
+
+use crate::engine::Engine;
+use crate::engine::stochastic::Stochastic;
+use crate::engine::stochastic::laws::{DenseGas, Laws};
+use crate::law::boundary::Boundary;
+use crate::law::restitution::{Constant, Restitution, RestitutionLaw};
+use crate::matter::grid::Grid;
+use crate::random::Streams;
+use crate::scenario::model::{EngineKind, HsmcRules, Scenario};
+use crate::space::Vector;
+
+/// The scenario's box and cells.
+pub fn grid<V: Vector>(scenario: &Scenario<V>) -> Grid<V> {
+    let periodic: Vec<bool> = (0..V::DIMENSION).map(|axis| scenario.boundary.is_periodic(axis)).collect();
+    Grid::new(scenario.grid_origin, scenario.grid_size, &scenario.cells, &periodic)
+}
+
+/// The scenario's engine, under the given seed, boundary and gravity; `restitution` overrides
+/// that of grains and cells.
+pub fn engine<V: Vector>(
+    scenario: &Scenario<V>,
+    seed: u64,
+    boundary: &Boundary<V>,
+    gravity: V,
+    restitution: Option<f64>,
+) -> Box<dyn Engine<V>> {
+    let law = restitution.map_or(scenario.restitution, |r| RestitutionLaw::Constant(Constant(r)));
+    match law {
+        RestitutionLaw::Constant(law) => with_law(scenario, seed, boundary, gravity, law, restitution),
+        RestitutionLaw::VelocityDependent(law) => with_law(scenario, seed, boundary, gravity, law, restitution),
+    }
+}
+
+fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
+    scenario: &Scenario<V>,
+    seed: u64,
+    boundary: &Boundary<V>,
+    gravity: V,
+    restitution: R,
+    cell_restitution: Option<f64>,
+) -> Box<dyn Engine<V>> {
+    let laws = Laws {
+        grain: scenario.grain,
+        restitution,
+        gravity,
+        boundary: *boundary,
+        dense: dense_gas(scenario),
+        streams: Streams::new(seed),
+        seed,
+    };
+    let rules = (scenario.engine.kind == EngineKind::Hsmc).then(|| HsmcRules {
+        cell_restitution: cell_restitution.unwrap_or(scenario.engine.hsmc.cell_restitution),
+        ..scenario.engine.hsmc
+    });
+    Box::new(Stochastic::new(laws, scenario.engine.time_step, rules))
+}
+
+/// What CBA and HSMC add to DSMC.
+fn dense_gas<V: Vector>(scenario: &Scenario<V>) -> Option<DenseGas> {
+    let largest_volume_fraction = match scenario.engine.kind {
+        EngineKind::Dsmc => return None,
+        EngineKind::Cba => V::LARGEST_LOCAL_FRACTION,
+        EngineKind::Hsmc => V::LARGEST_LOCAL_FRACTION_HSMC,
+    };
+    Some(DenseGas {
+        enskog_factor: scenario.engine.enskog_factor,
+        transfer: scenario.engine.transfer,
+        displacement_ratio: V::displacement_ratio(scenario.restitution.typical()),
+        largest_volume_fraction,
+    })
+}

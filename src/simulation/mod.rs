@@ -1,0 +1,215 @@
+//! A run: a scenario's gas, the engine that advances it, the measures that watch.
+
+pub mod assembly;
+pub mod limits;
+pub mod pouring;
+pub mod schedule;
+
+use crate::engine::report::Totals;
+use crate::engine::{Engine, EngineError, Laps};
+use crate::law::boundary::Boundary;
+use crate::matter::gas::Gas;
+use crate::observe::measure::{Cadence, Measure, Snapshot};
+use crate::observe::{measures, moments};
+use crate::random::{Phase, Streams};
+use crate::record::state::{Beginning, SavedState};
+use crate::scenario::initial::rescale;
+use crate::scenario::model::{InitialVelocities, Scenario};
+use crate::space::Vector;
+use limits::{EndReason, Limits};
+use pouring::{Pouring, PouringError};
+use schedule::Spread;
+
+/// How many looks a measure of spread cadence takes during a run.
+const SPREAD_SAMPLES: u32 = 400;
+
+/// Why a run cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// The engine says so.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The source says so.
+    #[error(transparent)]
+    Pouring(#[from] PouringError),
+}
+
+/// A run at one of its step ends.
+pub struct Simulation<'s, V: Vector> {
+    scenario: &'s Scenario<V>,
+    gas: Gas<V>,
+    engine: Box<dyn Engine<V>>,
+    totals: Totals<V>,
+    pouring: Option<Pouring<V>>,
+    limits: Limits,
+    measures: Vec<Box<dyn Measure<V>>>,
+    samples: Vec<u64>,
+    beginning: Beginning<V>,
+}
+
+impl<'s, V: Vector> Simulation<'s, V> {
+    /// Starts from `gas`, the scenario's initial state, after its equilibration if it asks for one.
+    pub fn start(scenario: &'s Scenario<V>, mut gas: Gas<V>, laps: &mut dyn Laps) -> Result<Self, SimulationError> {
+        if scenario.initial.equilibrate > 0.0 {
+            equilibrate(scenario, &mut gas, laps)?;
+        }
+        let beginning = Beginning {
+            particles: gas.len() as u64,
+            kinetic_energy: moments::kinetic_energy(&gas),
+            momentum: moments::momentum(&gas),
+            momentum_scale: gas.velocities().iter().map(|v| v.length()).sum::<f64>() * gas.grain.mass,
+        };
+        let mut simulation = Self::assemble(scenario, gas, beginning);
+        simulation.take_samples();
+        Ok(simulation)
+    }
+
+    /// Goes on from a saved state, to the same bits as if there had been no interruption.
+    pub fn resume(scenario: &'s Scenario<V>, saved: SavedState<V>) -> Self {
+        let gas = saved.gas(assembly::grid(scenario), scenario.grain);
+        let mut simulation = Self::assemble(scenario, gas, saved.beginning);
+        simulation.engine.restore(&saved.engine);
+        simulation.totals = saved.totals;
+        if let Some(pouring) = &mut simulation.pouring {
+            pouring.restore(simulation.totals.poured, saved.last_poured);
+        }
+        simulation.samples = saved.samples;
+        for measure in &mut simulation.measures {
+            if let Some((_, memory)) = saved.memories.iter().find(|(name, _)| name == measure.name()) {
+                measure.recall(memory);
+            }
+        }
+        simulation
+    }
+
+    fn assemble(scenario: &'s Scenario<V>, gas: Gas<V>, beginning: Beginning<V>) -> Self {
+        let measures = measures(scenario);
+        Simulation {
+            scenario,
+            gas,
+            engine: assembly::engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None),
+            totals: Totals::default(),
+            pouring: scenario.source.clone().map(|source| Pouring::new(source, scenario)),
+            limits: Limits::new(scenario),
+            samples: vec![0; measures.len()],
+            measures,
+            beginning,
+        }
+    }
+
+    /// One step: pour what is due, advance, let the measures look.
+    pub fn advance(&mut self, laps: &mut dyn Laps) -> Result<(), SimulationError> {
+        if let Some(pouring) = &mut self.pouring {
+            laps.start("pouring");
+            let capacity = self.engine.capacity(&self.gas);
+            self.totals.poured += pouring.pour(&mut self.gas, capacity)?;
+        }
+        let grains = self.gas.len();
+        let report = self.engine.step(&mut self.gas, laps)?;
+        self.totals.add(&report, grains);
+        laps.start("measures");
+        self.take_samples();
+        Ok(())
+    }
+
+    /// Shows the gas to every measure whose time has come.
+    fn take_samples(&mut self) {
+        let snapshot = Snapshot { gas: &self.gas, totals: &self.totals };
+        let progress = self.limits.progress(snapshot.gas.time(), &self.totals, self.pouring.as_ref());
+        for (measure, taken) in self.measures.iter_mut().zip(&mut self.samples) {
+            match measure.cadence() {
+                Cadence::Recordings => {}
+                Cadence::Spread => {
+                    if Spread::Even(SPREAD_SAMPLES).is_due(*taken, snapshot.gas.time(), progress) {
+                        measure.sample(&snapshot);
+                        *taken = Spread::Even(SPREAD_SAMPLES).next(snapshot.gas.time(), progress);
+                    }
+                }
+                // A long step may pass several nominal times: each gets its sample.
+                Cadence::Every(interval) => {
+                    while Spread::Every(interval).is_due(*taken, snapshot.gas.time(), progress) {
+                        measure.sample(&snapshot);
+                        *taken += 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a limit is reached, and which.
+    pub fn end_reason(&self) -> Option<EndReason> {
+        self.limits.end_reason(&self.gas, &self.totals, self.pouring.as_ref())
+    }
+
+    /// How much of the run is done, in [0, 1]; 1 at its end.
+    pub fn progress(&self) -> f64 {
+        self.limits.progress(self.gas.time(), &self.totals, self.pouring.as_ref())
+    }
+
+    /// The scenario that runs.
+    pub fn scenario(&self) -> &'s Scenario<V> {
+        self.scenario
+    }
+    /// The grains now.
+    pub fn gas(&self) -> &Gas<V> {
+        &self.gas
+    }
+    /// What has happened so far.
+    pub fn totals(&self) -> &Totals<V> {
+        &self.totals
+    }
+    /// What the run began with.
+    pub fn beginning(&self) -> &Beginning<V> {
+        &self.beginning
+    }
+    /// Grains that make a cell full, for engines with an excluded volume.
+    pub fn capacity(&self) -> Option<u32> {
+        self.engine.capacity(&self.gas)
+    }
+    /// The measures, to be asked for values, profiles and conclusions, with what they look at.
+    pub fn observation(&mut self) -> (&mut [Box<dyn Measure<V>>], Snapshot<'_, V>) {
+        (&mut self.measures, Snapshot { gas: &self.gas, totals: &self.totals })
+    }
+
+    /// Everything that the next step and the final figures depend on.
+    pub fn saved_state(&self, recordings: u64) -> SavedState<V> {
+        SavedState {
+            time: self.gas.clock.time(),
+            compensation: self.gas.clock.compensation(),
+            columns: self.gas.columns().clone(),
+            next_id: self.gas.next_id(),
+            engine: self.engine.state(),
+            totals: self.totals.clone(),
+            last_poured: self.pouring.as_ref().map_or(-1.0, Pouring::last_poured),
+            recordings,
+            samples: self.samples.clone(),
+            memories: self.measures.iter().map(|m| (m.name().to_owned(), m.memory())).collect(),
+            beginning: self.beginning,
+        }
+    }
+}
+
+/// Runs elastic, without gravity, wall motion or source, until the stated number of collisions per
+/// particle; then sets the stated temperature and the clock to zero.
+fn equilibrate<V: Vector>(
+    scenario: &Scenario<V>,
+    gas: &mut Gas<V>,
+    laps: &mut dyn Laps,
+) -> Result<(), SimulationError> {
+    let seed = Streams::new(scenario.seed).derived_seed(Phase::Equilibration);
+    let quiet: Boundary<V> = scenario.boundary.at_rest();
+    let mut engine = assembly::engine(scenario, seed, &quiet, V::ZERO, Some(1.0));
+    let mut totals = Totals::default();
+    while totals.collisions_per_particle < scenario.initial.equilibrate {
+        let report = engine.step(gas, laps)?;
+        totals.add(&report, gas.len());
+    }
+    let temperature = match scenario.initial.velocities {
+        InitialVelocities::Maxwell(temperature) => temperature,
+        InitialVelocities::Uniform(w) => scenario.grain.mass * w * w / 3.0,
+        InitialVelocities::Rest => 0.0,
+    };
+    rescale(gas, temperature);
+    gas.clock = Default::default();
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! The pouring source at work.
+
+use crate::law::source::Source;
+use crate::matter::gas::Gas;
+use crate::random::{Phase, Streams};
+use crate::scenario::model::Scenario;
+use crate::space::Vector;
+
+/// Width of a place of the grid in which the highest full place is looked for, in diameters.
+const PLACE_WIDTH: f64 = 2.0;
+
+/// Why nothing can be poured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PouringError {
+    /// The spout has left the box.
+    #[error(
+        "the heap has grown too high for its box at t = {time}: grains are poured at height {height}, the box \
+         ends at {end}; enlarge `domain.size` along gravity or lower `source.height`"
+    )]
+    AboveTheBox {
+        /// Height of the spout [length].
+        height: f64,
+        /// Upper end of the box along gravity [length].
+        end: f64,
+        /// When [time].
+        time: f64,
+    },
+}
+
+/// A source and what it has poured so far.
+#[derive(Clone, Debug)]
+pub struct Pouring<V> {
+    source: Source<V>,
+    streams: Streams,
+    axis: usize,
+    /// +1 where up is along the axis, −1 where gravity points along it.
+    up: f64,
+    poured: u32,
+    last_poured: f64,
+}
+
+impl<V: Vector> Pouring<V> {
+    /// The source of `scenario`, with nothing poured yet.
+    pub fn new(source: Source<V>, scenario: &Scenario<V>) -> Self {
+        let gravity = scenario.gravity;
+        let axis = (0..V::DIMENSION)
+            .max_by(|&a, &b| gravity[a].abs().total_cmp(&gravity[b].abs()))
+            .expect("a space has axes");
+        let up = if gravity[axis] < 0.0 { 1.0 } else { -1.0 };
+        Pouring { source, streams: Streams::new(scenario.seed), axis, up, poured: 0, last_poured: -1.0 }
+    }
+
+    /// Goes on after `poured` grains, the last of them at `last_poured`.
+    pub fn restore(&mut self, poured: u64, last_poured: f64) {
+        (self.poured, self.last_poured) = (poured as u32, last_poured);
+    }
+
+    /// Whether all grains are poured.
+    pub fn is_done(&self) -> bool {
+        self.poured >= self.source.count
+    }
+
+    /// When the last grain was poured [time]; −1 before the first.
+    pub fn last_poured(&self) -> f64 {
+        self.last_poured
+    }
+
+    /// Adds the grains that are due; one whose cell is full waits. Returns how many came.
+    pub fn pour(&mut self, gas: &mut Gas<V>, capacity: Option<u32>) -> Result<u64, PouringError> {
+        let mut came = 0;
+        while !self.is_done() && gas.time() >= f64::from(self.poured) / self.source.rate {
+            let position = self.spout(gas)?;
+            let cell = gas.grid().cell_of(position);
+            if capacity.is_some_and(|capacity| gas.occupancy(cell) >= capacity) {
+                break;
+            }
+            gas.insert(position, self.source.velocity);
+            self.poured += 1;
+            self.last_poured = gas.time();
+            came += 1;
+        }
+        Ok(came)
+    }
+
+    /// Where the next grain begins: above the highest full place, somewhere across the spout.
+    fn spout(&self, gas: &Gas<V>) -> Result<V, PouringError> {
+        let mut random = self.streams.at(u64::from(self.poured), Phase::Source).stream(0);
+        let ground = if self.up > 0.0 { gas.grid().origin() } else { gas.grid().end() }[self.axis];
+        let height = self.top_of_full_places(gas) + self.source.height;
+        if height >= gas.grid().size()[self.axis] {
+            let (end, time) = (gas.grid().size()[self.axis], gas.time());
+            return Err(PouringError::AboveTheBox { height, end, time });
+        }
+        Ok(V::from_fn(|axis| {
+            if axis == self.axis {
+                ground + self.up * height
+            } else {
+                self.source.position[axis] + 0.5 * self.source.width * random.symmetric()
+            }
+        }))
+    }
+
+    /// Height above the ground of the upper side of the highest place that is full: a place is a cube
+    /// two diameters wide, full at random close packing. 0 while none is full.
+    fn top_of_full_places(&self, gas: &Gas<V>) -> f64 {
+        let width = PLACE_WIDTH * gas.grain.diameter;
+        let grid = gas.grid();
+        let places: Vec<usize> =
+            (0..V::DIMENSION).map(|a| (grid.size()[a] / width).ceil().max(1.0) as usize).collect();
+        let full = (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / gas.grain.volume::<V>()) as u16;
+        let mut counts = vec![0_u16; places.iter().product()];
+        let mut top = 0;
+        for &position in gas.positions() {
+            let (mut place, mut level) = (0, 0);
+            for axis in (0..V::DIMENSION).rev() {
+                let upwards = axis != self.axis || self.up > 0.0;
+                let x = if upwards { position[axis] - grid.origin()[axis] } else { grid.end()[axis] - position[axis] };
+                let k = ((x / width) as usize).min(places[axis] - 1);
+                place = place * places[axis] + k;
+                level = if axis == self.axis { k + 1 } else { level };
+            }
+            counts[place] += 1;
+            if counts[place] >= full {
+                top = top.max(level);
+            }
+        }
+        top as f64 * width
+    }
+}

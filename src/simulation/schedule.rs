@@ -1,0 +1,97 @@
+//! When something is due. A step is never shortened: what is due happens at the first
+//! step end at or after its nominal time.
+
+/// Places spread over a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spread {
+    /// This many, evenly over the progress of the run, and one at its start.
+    Even(u32),
+    /// This many, evenly in the logarithm of the progress over three decades, and one at the start.
+    Logarithmic(u32),
+    /// Every so much time, beginning at 0 [time].
+    Every(f64),
+    /// This many, evenly inside the run: not at its start nor at its end.
+    Inside(u32),
+    /// At the start only; the end is not a matter of schedules.
+    Start,
+}
+
+/// Decades of progress that a logarithmic spread covers.
+const DECADES: f64 = 3.0;
+
+impl Spread {
+    /// Whether number `done` (0 for the first) is due at `time` and `progress`.
+    pub fn is_due(self, done: u64, time: f64, progress: f64) -> bool {
+        let k = done as f64;
+        match self {
+            Spread::Even(number) => done <= u64::from(number) && progress >= k / f64::from(number.max(1)),
+            Spread::Logarithmic(number) => {
+                done == 0
+                    || done <= u64::from(number) && progress >= logarithmic_place(done, number)
+            }
+            Spread::Every(interval) => time >= k * interval,
+            Spread::Inside(number) => {
+                done < u64::from(number) && progress >= (k + 1.0) / (f64::from(number) + 1.0)
+            }
+            Spread::Start => done == 0,
+        }
+    }
+
+    /// The number that is due next after everything up to `time` and `progress` is done.
+    pub fn next(self, time: f64, progress: f64) -> u64 {
+        let mut next = match self {
+            Spread::Even(number) => (progress * f64::from(number.max(1))) as u64,
+            Spread::Every(interval) => (time / interval) as u64,
+            Spread::Logarithmic(_) | Spread::Inside(_) | Spread::Start => 0,
+        };
+        // Rounding may have left the estimate one short or one beyond.
+        next = next.saturating_sub(1);
+        while self.is_due(next, time, progress) {
+            next += 1;
+        }
+        next
+    }
+}
+
+/// Progress at which number `k` ≥ 1 of `number` is due: 10⁻³ for the first, 1 for the last.
+fn logarithmic_place(k: u64, number: u32) -> f64 {
+    let share = if number > 1 { (k - 1) as f64 / f64::from(number - 1) } else { 1.0 };
+    if share >= 1.0 { 1.0 } else { libm::exp(std::f64::consts::LN_10 * DECADES * (share - 1.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_frames_include_start_and_end() {
+        let spread = Spread::Even(4);
+        let due = |progress| (0..10).take_while(|&k| spread.is_due(k, 0.0, progress)).count();
+        assert_eq!((due(0.0), due(0.2), due(0.25), due(1.0)), (1, 1, 2, 5));
+        assert_eq!((spread.next(0.0, 0.0), spread.next(0.0, 0.6), spread.next(0.0, 1.0)), (1, 3, 5));
+    }
+
+    #[test]
+    fn every_counts_from_zero() {
+        let spread = Spread::Every(0.1);
+        for k in 0..1000_u64 {
+            let next = spread.next(k as f64 * 0.1, 0.0);
+            assert_eq!(next, k + 1);
+        }
+    }
+
+    #[test]
+    fn logarithmic_places_span_three_decades() {
+        assert!((logarithmic_place(1, 7) - 1e-3).abs() < 1e-15);
+        assert!((logarithmic_place(3, 7) - 1e-2).abs() < 1e-14);
+        assert_eq!(logarithmic_place(7, 7), 1.0);
+        assert_eq!(Spread::Logarithmic(7).next(0.0, 0.011), 4);
+    }
+
+    #[test]
+    fn inside_leaves_out_both_ends() {
+        let spread = Spread::Inside(4);
+        assert!(!spread.is_due(0, 0.0, 0.19) && spread.is_due(0, 0.0, 0.2));
+        assert!(!spread.is_due(4, 0.0, 1.0));
+    }
+}
