@@ -2,6 +2,7 @@
 
 pub mod random;
 pub mod space;
+pub mod statistics;
 
 pub mod matter;
 

@@ -1,0 +1,75 @@
+//! `density-profile`: volume fraction in slices, at every recording.
+
+use super::layout;
+use super::measure::{Measure, Profile, Snapshot};
+use super::slices;
+use super::units::{LENGTH, PURE, column};
+use crate::scenario::model::Scenario;
+use crate::space::Vector;
+
+/// Volume fraction in slices of one cell along gravity; else across walls; else along the longest axis.
+#[derive(Clone, Copy, Debug)]
+pub struct DensityProfile {
+    axis: usize,
+}
+
+impl DensityProfile {
+    /// The measure for `scenario`; every scenario has it.
+    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Self {
+        DensityProfile { axis: layout::profile_axis(scenario) }
+    }
+}
+
+impl<V: Vector> Measure<V> for DensityProfile {
+    fn name(&self) -> &'static str {
+        "density-profile"
+    }
+
+    fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
+        let gas = snapshot.gas;
+        let counts = slices::counts(gas, self.axis);
+        let slice_volume = gas.grid().size().product() / counts.len() as f64;
+        let share = gas.grain.volume::<V>() / slice_volume;
+        vec![Profile {
+            name: "density-profile".to_owned(),
+            time: gas.time(),
+            columns: vec![column("position", LENGTH), column("volume_fraction", PURE)],
+            values: vec![
+                slices::centres(gas, self.axis),
+                counts.into_iter().map(|count| f64::from(count) * share).collect(),
+            ],
+        }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::report::Totals;
+    use crate::observe::testing::{assert_resumes, scenario_of};
+    use glam::DVec3;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn slices_of_known_content() {
+        let bed = scenario_of(DVec3::new(2.0, 4.0, 6.0), [1, 2, 3]);
+        let mut positions = vec![DVec3::new(1.0, 1.0, 5.0); 4];
+        positions.push(DVec3::new(1.0, 3.0, 1.0));
+        let gas = bed.gas(2.5, positions, vec![DVec3::ZERO; 5]);
+        let totals = Totals::default();
+        let profiles = DensityProfile::new(&bed.scenario).profiles(&Snapshot { gas: &gas, totals: &totals });
+        assert_eq!(profiles[0].time, 2.5);
+        assert_eq!(profiles[0].values[0], [1.0, 3.0, 5.0]);
+        // A slice holds 16, a grain π/6.
+        let expected = [PI / 96.0, 0.0, 4.0 * PI / 96.0];
+        for (found, expected) in profiles[0].values[1].iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn it_resumes() {
+        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert_resumes(|| Box::new(DensityProfile::new(&bed.scenario)), &bed.random_states(4, 20));
+    }
+}

@@ -1,0 +1,145 @@
+//! `energy`: kinetic energy, temperature, collisions and grains at every recording.
+
+use super::measure::{Column, Figure, Measure, Profile, Snapshot};
+use super::moments::{kinetic_energy, momentum, momentum_scale, temperature};
+use super::samples::figure;
+use super::units::{ENERGY, PURE, column};
+use crate::scenario::model::Scenario;
+use crate::space::Vector;
+use crate::statistics::Estimate;
+
+/// Energy and what it is made of, compared with the first state that it was shown.
+#[derive(Clone, Debug)]
+pub struct Energy<V> {
+    /// Whether nothing outside the gas can change its momentum.
+    is_free: bool,
+    start: Option<Start<V>>,
+}
+
+/// The first state.
+#[derive(Clone, Copy, Debug)]
+struct Start<V> {
+    kinetic_energy: f64,
+    momentum: V,
+    momentum_scale: f64,
+}
+
+impl<V: Vector> Energy<V> {
+    /// The measure for `scenario`; every scenario has it.
+    pub fn new(scenario: &Scenario<V>) -> Self {
+        let is_free = scenario.boundary.is_fully_periodic() && scenario.gravity == V::ZERO;
+        Energy { is_free, start: None }
+    }
+
+    fn remember_start(&mut self, snapshot: &Snapshot<'_, V>) {
+        self.start.get_or_insert_with(|| Start {
+            kinetic_energy: kinetic_energy(snapshot.gas),
+            momentum: momentum(snapshot.gas),
+            momentum_scale: momentum_scale(snapshot.gas),
+        });
+    }
+
+    /// |P(t) − P(0)| / Σ m|v(0)|; `None` where walls or gravity change P, or nothing moved at the start.
+    fn momentum_drift(&self, snapshot: &Snapshot<'_, V>) -> Option<f64> {
+        let start = self.start.filter(|start| self.is_free && start.momentum_scale > 0.0)?;
+        Some((momentum(snapshot.gas) - start.momentum).length() / start.momentum_scale)
+    }
+}
+
+impl<V: Vector> Measure<V> for Energy<V> {
+    fn name(&self) -> &'static str {
+        "energy"
+    }
+
+    fn sample(&mut self, snapshot: &Snapshot<'_, V>) {
+        self.remember_start(snapshot);
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            column("kinetic_energy", ENERGY),
+            column("temperature", ENERGY),
+            column("collisions_per_particle", PURE),
+            column("grains", PURE),
+        ]
+    }
+
+    fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        self.remember_start(snapshot);
+        let Snapshot { gas, totals } = snapshot;
+        let temperature = if gas.is_empty() { f64::NAN } else { temperature(gas) };
+        vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64]
+    }
+
+    fn conclusion(&self, snapshot: &Snapshot<'_, V>, _from: f64) -> (Vec<Profile>, Vec<Figure>) {
+        let exact = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let temperature = (!snapshot.gas.is_empty()).then(|| temperature(snapshot.gas));
+        let figures = vec![
+            figure("kinetic_energy_initial", exact(self.start.map(|start| start.kinetic_energy))),
+            figure("kinetic_energy_final", exact(Some(kinetic_energy(snapshot.gas)))),
+            figure("temperature", exact(temperature)),
+            figure("momentum_drift", exact(self.momentum_drift(snapshot))),
+        ];
+        (Vec::new(), figures)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        let Some(start) = self.start else { return Vec::new() };
+        let mut memory = vec![start.kinetic_energy, start.momentum_scale];
+        memory.extend(start.momentum.components());
+        memory
+    }
+
+    fn recall(&mut self, memory: &[f64]) {
+        self.start = match memory {
+            [kinetic_energy, momentum_scale, momentum @ ..] if momentum.len() == V::DIMENSION => {
+                Some(Start {
+                    kinetic_energy: *kinetic_energy,
+                    momentum: V::from_fn(|axis| momentum[axis]),
+                    momentum_scale: *momentum_scale,
+                })
+            }
+            _ => None,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::report::Totals;
+    use crate::observe::testing::{assert_resumes, figure_of, scenario_of, show, smooth};
+    use glam::{DVec2, DVec3};
+
+    #[test]
+    fn energy_and_drift_by_hand() {
+        let mut bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let places = vec![DVec2::ONE, DVec2::splat(3.0)];
+        let state = |time, v| (bed.gas(time, places.clone(), vec![DVec2::X, v]), Totals::default());
+        let states = [state(0.0, -DVec2::X), state(1.0, -DVec2::X * 0.5)];
+        let figure = |name| figure_of(&mut Energy::new(&bed.scenario), &states, 0.0, name).0;
+        assert_eq!(show(&mut Energy::new(&bed.scenario), &states[0])[..2], [1.0, 0.5]);
+        assert_eq!(figure("kinetic_energy_initial"), Some(1.0));
+        assert_eq!(figure("kinetic_energy_final"), Some(0.625));
+        assert_eq!(figure("momentum_drift"), Some(0.25));
+        // v̄ = 1/4: 2 (3/4)² / (2 · 2).
+        assert_eq!(figure("temperature"), Some(0.281_25));
+        bed.walls(0, smooth(), smooth());
+        let drift = figure_of(&mut Energy::new(&bed.scenario), &states, 0.0, "momentum_drift");
+        assert_eq!(drift.0, None);
+    }
+
+    #[test]
+    fn it_resumes() {
+        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert_resumes(|| Box::new(Energy::new(&bed.scenario)), &bed.random_states(4, 20));
+    }
+
+    #[test]
+    fn an_empty_box_has_no_temperature() {
+        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let values =
+            show(&mut Energy::new(&bed.scenario), &(bed.gas(0.0, vec![], vec![]), Totals::default()));
+        assert!(values[1].is_nan() && values[0] == 0.0);
+    }
+}

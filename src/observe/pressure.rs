@@ -1,0 +1,207 @@
+//! `pressure`: the equation of state of a periodic gas, kinetic and collisional (Miller 2004, equation 4.44).
+
+use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
+use super::moments::temperature;
+use super::samples::{Samples, figure, interval_mean, steady_rate};
+use super::units::{PURE, RATE, column, stress};
+use crate::scenario::model::Scenario;
+use crate::space::Vector;
+
+/// P = (N T + Σ p·s / (D Δt)) / V from the virial theorem (Hansen and McDonald 2006, section 2.2), the
+/// compressibility factor PV/NT, and collisions per particle and time.
+///
+/// Between two looks at the gas T is taken as √(T₁T₂): the exact mean of a temperature that
+/// falls by Haff's law, and right to second order for any other.
+#[derive(Clone, Debug)]
+pub struct Pressure {
+    /// V [lengthᴰ].
+    volume: f64,
+    dimension: f64,
+    /// The row of the previous recording.
+    previous: Option<Row>,
+    samples: Samples,
+}
+
+/// Time, temperature, Σ p·s, collisions per particle, grains.
+type Row = [f64; 5];
+
+/// What an interval between two rows says.
+struct Interval {
+    pressure: f64,
+    compressibility_factor: f64,
+    collision_frequency: f64,
+}
+
+impl Pressure {
+    /// The measure for `scenario`, if it is periodic everywhere and has no gravity.
+    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
+        let applies = scenario.boundary.is_fully_periodic() && scenario.gravity == V::ZERO;
+        applies.then(|| Pressure {
+            volume: scenario.size.product(),
+            dimension: V::DIMENSION as f64,
+            previous: None,
+            samples: Samples::new(4),
+        })
+    }
+
+    fn interval(&self, first: &[f64], last: &[f64]) -> Interval {
+        let duration = last[0] - first[0];
+        let grains = last[4];
+        let thermal = grains * (first[1] * last[1]).sqrt();
+        let collisional = (last[2] - first[2]) / (self.dimension * duration);
+        Interval {
+            pressure: (thermal + collisional) / self.volume,
+            compressibility_factor: 1.0 + collisional / thermal,
+            collision_frequency: (last[3] - first[3]) / duration,
+        }
+    }
+}
+
+fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> Row {
+    let Snapshot { gas, totals } = snapshot;
+    [
+        gas.time(),
+        temperature(gas),
+        totals.counts.carried_momentum,
+        totals.collisions_per_particle,
+        gas.len() as f64,
+    ]
+}
+
+impl<V: Vector> Measure<V> for Pressure {
+    fn name(&self) -> &'static str {
+        "pressure"
+    }
+
+    fn cadence(&self) -> Cadence {
+        Cadence::Spread
+    }
+
+    fn sample(&mut self, snapshot: &Snapshot<'_, V>) {
+        let row = row(snapshot);
+        self.samples.push(row[0], &row[1..]);
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            column("pressure", stress::<V>()),
+            column("compressibility_factor", PURE),
+            column("collision_frequency", RATE),
+        ]
+    }
+
+    fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        let now = row(snapshot);
+        match self.previous.replace(now) {
+            Some(before) if before[0] < now[0] => {
+                let interval = self.interval(&before, &now);
+                vec![interval.pressure, interval.compressibility_factor, interval.collision_frequency]
+            }
+            _ => vec![f64::NAN; 3],
+        }
+    }
+
+    fn conclusion(&self, snapshot: &Snapshot<'_, V>, from: f64) -> (Vec<Profile>, Vec<Figure>) {
+        let end = row(snapshot);
+        let samples = self.samples.with(end[0], &end[1..]);
+        let rows = samples.since(from);
+        let mean = |value: fn(Interval) -> f64| interval_mean(&rows, |a, b| value(self.interval(a, b)));
+        let figures = vec![
+            figure("pressure", mean(|interval| interval.pressure)),
+            figure("compressibility_factor", mean(|interval| interval.compressibility_factor)),
+            figure("collision_frequency", steady_rate(&rows, |row| row[3])),
+        ];
+        (Vec::new(), figures)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        let previous = self.previous.map_or(Vec::new(), |row| row.to_vec());
+        // The first number says whether there was a recording.
+        [&[f64::from(u8::from(self.previous.is_some()))], &previous[..], self.samples.memory()].concat()
+    }
+
+    fn recall(&mut self, memory: &[f64]) {
+        let Some((&recorded, rest)) = memory.split_first() else { return };
+        let previous = if recorded > 0.0 { rest.split_first_chunk() } else { None };
+        self.previous = previous.map(|(row, _)| *row);
+        self.samples.recall(previous.map_or(rest, |(_, samples)| samples));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::report::Totals;
+    use crate::observe::testing::{State, assert_resumes, figure_of, scenario_of, show, smooth};
+    use glam::{DVec2, DVec3};
+
+    /// Temperature 1/(1 + t/5)², and Σ p·s growing by `carried` T per time.
+    fn cooling(cooling: bool, carried: f64) -> Vec<State<DVec2>> {
+        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let state = |time: f64| {
+            let (speed, integral) =
+                if cooling { (1.0 / (1.0 + time / 5.0), time / (1.0 + time / 5.0)) } else { (1.0, time) };
+            let mut totals = Totals { collisions_per_particle: 3.0 * time, ..Totals::default() };
+            totals.counts.carried_momentum = carried * integral;
+            let velocities = vec![DVec2::ONE * speed, -DVec2::ONE * speed];
+            (bed.gas(time, vec![DVec2::ONE; 2], velocities), totals)
+        };
+        (0..40).map(|k| state(f64::from(k))).collect()
+    }
+
+    fn figure(states: &[State<DVec2>], name: &str) -> f64 {
+        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let (value, error) = figure_of(&mut Pressure::new(&bed.scenario).unwrap(), states, 20.0, name);
+        assert!(error.unwrap() < 1e-12 * (1.0 + value.unwrap()) || name == "pressure");
+        value.unwrap()
+    }
+
+    #[test]
+    fn an_ideal_gas() {
+        // N T / V = 2 · 1 / 16.
+        assert_eq!(figure(&cooling(false, 0.0), "pressure"), 0.125);
+        assert_eq!(figure(&cooling(false, 0.0), "compressibility_factor"), 1.0);
+        assert!((figure(&cooling(true, 0.0), "compressibility_factor") - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn carried_momentum_adds_to_it() {
+        // (2 + 6/2) / 16, and 1 + 3/2.
+        assert!((figure(&cooling(false, 6.0), "pressure") - 0.3125).abs() < 1e-13);
+        assert!((figure(&cooling(false, 6.0), "compressibility_factor") - 2.5).abs() < 1e-13);
+        assert!((figure(&cooling(false, 6.0), "collision_frequency") - 3.0).abs() < 1e-13);
+        // A gas that cools by Haff's law keeps its compressibility factor, however coarse the look.
+        assert!((figure(&cooling(true, 6.0), "compressibility_factor") - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_series_has_the_same_values() {
+        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let mut measure = Pressure::new(&bed.scenario).unwrap();
+        let states = cooling(false, 6.0);
+        assert!(show(&mut measure, &states[0]).iter().all(|x| x.is_nan()));
+        let values = show(&mut measure, &states[1]);
+        for (value, expected) in values.iter().zip([0.3125, 2.5, 3.0]) {
+            assert!((value - expected).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn walls_and_gravity_have_other_measures() {
+        let mut bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert!(Pressure::new(&bed.scenario).is_some());
+        bed.scenario.gravity = DVec3::X;
+        assert!(Pressure::new(&bed.scenario).is_none());
+        bed.scenario.gravity = DVec3::ZERO;
+        bed.walls(1, smooth(), smooth());
+        assert!(Pressure::new(&bed.scenario).is_none());
+    }
+
+    #[test]
+    fn it_resumes() {
+        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
+        let make = || Box::new(Pressure::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec3>>;
+        assert_resumes(make, &bed.random_states(30, 20));
+        assert_resumes(make, &bed.random_states(1, 20));
+    }
+}

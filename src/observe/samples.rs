@@ -1,0 +1,122 @@
+//! Rows of numbers taken at rising times, and steady figures from them.
+
+use super::measure::Figure;
+use crate::statistics::{Estimate, block_average, blocks, standard_error};
+
+/// Samples of a fixed number of values; each row begins with its time.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Samples {
+    width: usize,
+    /// `[sample][time, value …]`, flat.
+    flat: Vec<f64>,
+}
+
+impl Samples {
+    /// No samples yet, of `values` values each.
+    pub(crate) fn new(values: usize) -> Self {
+        Samples { width: values + 1, flat: Vec::new() }
+    }
+
+    /// Adds a row, unless the last one is as late: no time counts twice.
+    pub(crate) fn push(&mut self, time: f64, values: &[f64]) {
+        debug_assert_eq!(values.len() + 1, self.width);
+        let is_later = self.flat.rchunks_exact(self.width).next().is_none_or(|last| last[0] < time);
+        if is_later {
+            self.flat.push(time);
+            self.flat.extend_from_slice(values);
+        }
+    }
+
+    /// The same samples and one more.
+    pub(crate) fn with(&self, time: f64, values: &[f64]) -> Self {
+        let mut all = self.clone();
+        all.push(time, values);
+        all
+    }
+
+    /// Rows at times from `from` on.
+    pub(crate) fn since(&self, from: f64) -> Vec<&[f64]> {
+        self.flat.chunks_exact(self.width).filter(|row| row[0] >= from).collect()
+    }
+
+    /// Everything, as numbers to be saved.
+    pub(crate) fn memory(&self) -> &[f64] {
+        &self.flat
+    }
+
+    /// Takes over what [`Samples::memory`] gave.
+    pub(crate) fn recall(&mut self, memory: &[f64]) {
+        self.flat.clear();
+        self.flat.extend_from_slice(memory);
+    }
+}
+
+/// Mean of one value over the rows, with its error from blocks; values that are not finite are left out.
+pub(crate) fn steady_mean(rows: &[&[f64]], value: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
+    let values: Vec<f64> = rows.iter().map(|row| value(row)).filter(|x| x.is_finite()).collect();
+    block_average(&values)
+}
+
+/// Mean of a quantity that belongs to the interval between two rows, over all neighbours.
+pub(crate) fn interval_mean(rows: &[&[f64]], value: impl Fn(&[f64], &[f64]) -> f64) -> Option<Estimate> {
+    let values: Vec<f64> =
+        rows.windows(2).map(|pair| value(pair[0], pair[1])).filter(|x| x.is_finite()).collect();
+    block_average(&values)
+}
+
+/// Growth of a running total per time over all rows, with its error from blocks.
+pub(crate) fn steady_rate(rows: &[&[f64]], total: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
+    let rate = |first: &[f64], last: &[f64]| (total(last) - total(first)) / (last[0] - first[0]);
+    let intervals = rows.len().checked_sub(1)?;
+    let parts: Vec<f64> = blocks(intervals).map(|block| rate(rows[block.start], rows[block.end])).collect();
+    let value = rate(rows[0], rows[intervals]);
+    value.is_finite().then(|| Estimate { value, standard_error: standard_error(&parts) })
+}
+
+/// The figure of that name.
+pub(crate) fn figure(name: &str, estimate: Option<Estimate>) -> Figure {
+    Figure {
+        name: name.to_owned(),
+        value: estimate.map(|e| e.value).filter(|x| x.is_finite()),
+        standard_error: estimate.and_then(|e| e.standard_error).filter(|x| x.is_finite()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counted() -> Samples {
+        let mut samples = Samples::new(1);
+        for k in 0..=20 {
+            // Grows by 1 and by 3 in turn: 2 per time.
+            samples.push(f64::from(k), &[f64::from(2 * k + k % 2)]);
+        }
+        samples
+    }
+
+    #[test]
+    fn a_time_counts_once() {
+        let mut samples = counted();
+        samples.push(20.0, &[99.0]);
+        assert_eq!(samples, counted());
+        assert_eq!(samples.since(19.0), [[19.0, 39.0], [20.0, 40.0]]);
+    }
+
+    #[test]
+    fn rates_come_from_the_ends() {
+        let samples = counted();
+        let rows = samples.since(0.0);
+        let rate = steady_rate(&rows, |row| row[1]).unwrap();
+        assert_eq!(rate, Estimate { value: 2.0, standard_error: Some(0.0) });
+        assert_eq!(steady_rate(&rows[..1], |row| row[1]), None);
+        assert_eq!(steady_rate(&[], |row| row[1]), None);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_left_out() {
+        let rows: [&[f64]; 3] = [&[0.0, 1.0], &[1.0, f64::NAN], &[2.0, 3.0]];
+        assert_eq!(steady_mean(&rows, |row| row[1]).unwrap().value, 2.0);
+        assert_eq!(figure("x", Some(Estimate { value: f64::NAN, standard_error: None })).value, None);
+    }
+}

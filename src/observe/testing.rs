@@ -1,0 +1,180 @@
+//! Places and states made by hand, for the tests of measures.
+
+use super::measure::{Measure, Snapshot};
+use crate::engine::report::Totals;
+use crate::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
+use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::matter::clock::Clock;
+use crate::matter::gas::Gas;
+use crate::matter::grain::Grain;
+use crate::matter::grid::Grid;
+use crate::random::{Phase, Streams};
+use crate::scenario::model::*;
+use crate::space::Vector;
+
+/// A scenario to be changed at will.
+pub(crate) struct Bed<V: Vector> {
+    pub(crate) scenario: Scenario<V>,
+}
+
+/// A gas and what happened to it.
+pub(crate) type State<V> = (Gas<V>, Totals<V>);
+
+/// A periodic box without gravity; grains of unit diameter and mass.
+pub(crate) fn scenario_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
+    let hsmc = HsmcRules {
+        maximum_volume_fraction: V::RANDOM_CLOSE_PACKING,
+        cell_restitution: 0.9,
+        sweeps: 4,
+        admission: Admission::Strict,
+        displacement: DisplacementRule::Paired,
+    };
+    let engine = EngineChoice {
+        kind: EngineKind::Hsmc,
+        time_step: TimeStep::Fixed(0.1),
+        enskog_factor: EnskogFactor::Local,
+        transfer: Transfer::Corrected,
+        hsmc,
+    };
+    let initial = Initial {
+        positions: InitialPositions::Random,
+        velocities: InitialVelocities::Rest,
+        equilibrate: 0.0,
+    };
+    let record = RecordPlan { spacing: Spacing::Ends, points: None, measures: None, states: 0, from: None };
+    Bed {
+        scenario: Scenario {
+            name: "test".into(),
+            title: "Test".into(),
+            source_text: String::new(),
+            seed: 1,
+            gravity: V::ZERO,
+            engine,
+            size,
+            grid_origin: V::ZERO,
+            grid_size: size,
+            cells,
+            boundary: Boundary::periodic(),
+            grain: Grain { diameter: 1.0, mass: 1.0 },
+            restitution: RestitutionLaw::Constant(Constant(0.9)),
+            count: 0,
+            initial,
+            source: None,
+            run: RunLimits::default(),
+            record,
+            units: Units { length: "d".into(), mass: "m".into(), time: "t".into() },
+        },
+    }
+}
+
+impl<V: Vector> Bed<V> {
+    /// Puts faces at the ends of `axis`.
+    pub(crate) fn walls(&mut self, axis: usize, lower: Face<V>, upper: Face<V>) {
+        self.scenario.boundary.axes[axis] = AxisBoundary::Faces { lower, upper };
+    }
+
+    /// Grains in the box at `time`.
+    pub(crate) fn gas(&self, time: f64, positions: Vec<V>, velocities: Vec<V>) -> Gas<V> {
+        let scenario = &self.scenario;
+        let periodic: Vec<bool> = (0..V::DIMENSION).map(|axis| scenario.boundary.is_periodic(axis)).collect();
+        let grid = Grid::new(scenario.grid_origin, scenario.grid_size, &scenario.cells, &periodic);
+        let mut gas = Gas::new(grid, scenario.grain, positions, velocities);
+        gas.clock = Clock::restored(time, 0.0);
+        gas
+    }
+
+    /// Random grains at `states` times 0, 1, 2 …, with totals that grow at random.
+    pub(crate) fn random_states(&self, states: usize, grains: usize) -> Vec<State<V>> {
+        let mut random = Streams::new(77).at(0, Phase::Collisions).stream(0);
+        let mut totals = Totals::default();
+        (0..states as u64)
+            .map(|k| {
+                let positions = random_positions(k, grains, self.scenario.size);
+                let gas = self.gas(k as f64, positions, random_velocities(1000 + k, grains));
+                if k > 0 {
+                    totals.collisions_per_particle += random.uniform();
+                    totals.counts.carried_momentum += random.uniform() * grains as f64;
+                    for sides in &mut totals.counts.wall_momentum {
+                        sides[0] += V::from_fn(|_| random.gaussian());
+                        sides[1] += V::from_fn(|_| random.gaussian());
+                    }
+                }
+                (gas, totals.clone())
+            })
+            .collect()
+    }
+}
+
+/// A smooth elastic wall.
+pub(crate) fn smooth<V: Vector>() -> Face<V> {
+    Face::Wall(Wall { restitution: 1.0, kind: WallKind::Smooth })
+}
+
+/// A rough elastic wall.
+pub(crate) fn rough<V: Vector>(velocity: V) -> Face<V> {
+    Face::Wall(Wall { restitution: 1.0, kind: WallKind::Rough { velocity } })
+}
+
+/// Independent places in a box of `size` at the origin.
+pub(crate) fn random_positions<V: Vector>(seed: u64, grains: usize, size: V) -> Vec<V> {
+    let mut random = Streams::new(seed).at(0, Phase::InitialPositions).stream(0);
+    (0..grains).map(|_| V::from_fn(|axis| size[axis] * random.uniform())).collect()
+}
+
+/// Independent Gaussian velocities of variance 1 along every axis.
+pub(crate) fn random_velocities<V: Vector>(seed: u64, grains: usize) -> Vec<V> {
+    let mut random = Streams::new(seed).at(0, Phase::InitialVelocities).stream(0);
+    (0..grains).map(|_| V::from_fn(|_| random.gaussian())).collect()
+}
+
+/// Shows a measure one state, as a sample and as a recording; returns what it said.
+pub(crate) fn show<V: Vector>(measure: &mut dyn Measure<V>, (gas, totals): &State<V>) -> Vec<f64> {
+    let snapshot = Snapshot { gas, totals };
+    measure.sample(&snapshot);
+    let values = measure.values(&snapshot);
+    assert_eq!(values.len(), measure.columns().len(), "{}", measure.name());
+    for profile in measure.profiles(&snapshot) {
+        assert_eq!(profile.columns.len(), profile.values.len());
+    }
+    values
+}
+
+/// Shows a measure all states; returns value and standard error of `figure` from `from` on.
+pub(crate) fn figure_of<V: Vector>(
+    measure: &mut dyn Measure<V>,
+    states: &[State<V>],
+    from: f64,
+    figure: &str,
+) -> (Option<f64>, Option<f64>) {
+    for state in states {
+        show(measure, state);
+    }
+    let (gas, totals) = states.last().unwrap();
+    let (_, figures) = measure.conclusion(&Snapshot { gas, totals }, from);
+    let found = figures.iter().find(|f| f.name == figure).unwrap_or_else(|| panic!("no {figure}"));
+    (found.value, found.standard_error)
+}
+
+/// Asserts that a measure which is saved and recalled in the middle ends with the same bits.
+pub(crate) fn assert_resumes<V: Vector>(make: impl Fn() -> Box<dyn Measure<V>>, states: &[State<V>]) {
+    let (before, after) = states.split_at(states.len() / 2);
+    let mut first = make();
+    for state in before {
+        show(&mut *first, state);
+    }
+    let saved = first.memory();
+    let mut second = make();
+    second.recall(&saved);
+    let bits = |memory: Vec<f64>| memory.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+    assert_eq!(bits(second.memory()), bits(saved));
+    for state in after {
+        let said = (show(&mut *first, state), show(&mut *second, state));
+        assert_eq!(bits(said.0), bits(said.1), "{}", first.name());
+    }
+    let (gas, totals) = states.last().unwrap();
+    let snapshot = Snapshot { gas, totals };
+    // The shortest decimal that reads back the same: equal text is equal bits.
+    let text = |measure: &dyn Measure<V>| format!("{:?}", measure.conclusion(&snapshot, 1.0));
+    assert_eq!(text(&*first), text(&*second));
+    assert_eq!(bits(first.memory()), bits(second.memory()));
+}

@@ -1,0 +1,182 @@
+//! `velocity-profile`: the mean velocity across a shear cell (Müller 2001, section 3.3).
+
+use super::layout::{self, Shear};
+use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
+use super::samples::{Samples, figure};
+use super::slices;
+use super::units::{LENGTH, VELOCITY, column};
+use crate::scenario::model::Scenario;
+use crate::space::Vector;
+use crate::statistics::{Estimate, StraightLine, blocks, standard_error, straight_line};
+
+/// Share of the height, at either wall, that the straight line leaves out.
+const MARGIN: f64 = 0.1;
+
+/// Mean velocity along the moving walls in slices of one cell between them.
+#[derive(Clone, Debug)]
+pub struct VelocityProfile<V> {
+    shear: Shear<V>,
+    /// H [length].
+    height: f64,
+    slices: usize,
+    /// `[sample][Σ v of each slice, grains of each slice]`.
+    samples: Samples,
+}
+
+impl<V: Vector> VelocityProfile<V> {
+    /// The measure for `scenario`, if its walls move past each other.
+    pub fn new(scenario: &Scenario<V>) -> Option<Self> {
+        let shear = layout::shear(scenario)?;
+        let slices = scenario.cells[shear.axis] as usize;
+        let height = scenario.size[shear.axis];
+        Some(VelocityProfile { shear, height, slices, samples: Samples::new(2 * slices) })
+    }
+
+    /// Mean over all grains of all `rows`, `[slice]`; NaN in a slice that was always empty.
+    fn mean_of(&self, rows: &[&[f64]]) -> Vec<f64> {
+        let total = |column: usize| rows.iter().map(|row| row[1 + column]).sum::<f64>();
+        (0..self.slices).map(|slice| total(slice) / total(self.slices + slice)).collect()
+    }
+
+    /// The straight line through the central part, in units of v and H.
+    fn line(&self, heights: &[f64], velocities: &[f64]) -> Option<StraightLine> {
+        let reduced =
+            heights.iter().map(|h| h / self.height).zip(velocities.iter().map(|v| v / self.shear.speed));
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            reduced.filter(|(x, y)| (MARGIN..=1.0 - MARGIN).contains(x) && y.is_finite()).unzip();
+        straight_line(&x, &y)
+    }
+}
+
+impl<V: Vector> Measure<V> for VelocityProfile<V> {
+    fn name(&self) -> &'static str {
+        "velocity-profile"
+    }
+
+    fn cadence(&self) -> Cadence {
+        Cadence::Spread
+    }
+
+    fn sample(&mut self, snapshot: &Snapshot<'_, V>) {
+        let Shear { axis, direction, .. } = self.shear;
+        let mut row = slices::velocity_sums(snapshot.gas, axis, |v| v.dot(direction));
+        row.extend(slices::counts(snapshot.gas, axis).into_iter().map(f64::from));
+        self.samples.push(snapshot.gas.time(), &row);
+    }
+
+    fn conclusion(&self, snapshot: &Snapshot<'_, V>, from: f64) -> (Vec<Profile>, Vec<Figure>) {
+        let rows = self.samples.since(from);
+        let heights = slices::centres(snapshot.gas, self.shear.axis);
+        let velocities = self.mean_of(&rows);
+        let in_blocks: Vec<Vec<f64>> = blocks(rows.len()).map(|block| self.mean_of(&rows[block])).collect();
+        let errors = (0..self.slices).map(|slice| {
+            let values: Vec<f64> = in_blocks.iter().map(|b| b[slice]).filter(|v| v.is_finite()).collect();
+            standard_error(&values).unwrap_or(f64::NAN)
+        });
+        let slopes: Vec<f64> =
+            in_blocks.iter().filter_map(|block| Some(self.line(&heights, block)?.slope)).collect();
+        let line = self.line(&heights, &velocities);
+        let slope = line.map(|line| Estimate { value: line.slope, standard_error: standard_error(&slopes) });
+        let r_squared = line.map(|line| Estimate { value: line.r_squared, standard_error: None });
+        let profile = Profile {
+            name: "velocity-profile".to_owned(),
+            time: snapshot.gas.time(),
+            columns: columns(),
+            values: vec![heights.clone(), velocities.clone(), errors.collect()],
+        };
+        let figures =
+            vec![figure("velocity_profile_slope", slope), figure("velocity_profile_r_squared", r_squared)];
+        (vec![profile], figures)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.samples.memory().to_vec()
+    }
+
+    fn recall(&mut self, memory: &[f64]) {
+        self.samples.recall(memory);
+    }
+}
+
+fn columns() -> Vec<Column> {
+    vec![column("height", LENGTH), column("velocity", VELOCITY), column("standard_error", VELOCITY)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::report::Totals;
+    use crate::observe::testing::{Bed, State, assert_resumes, figure_of, rough, scenario_of, show};
+    use glam::{DVec2, DVec3};
+
+    fn sheared() -> Bed<DVec2> {
+        let mut bed = scenario_of(DVec2::splat(40.0), [20, 20, 1]);
+        bed.walls(1, rough(DVec2::new(-0.5, 0.0)), rough(DVec2::new(0.5, 0.0)));
+        bed
+    }
+
+    /// One grain in the middle of every cell, moving as `velocity` of its height says.
+    fn flowing(bed: &Bed<DVec2>, time: f64, velocity: impl Fn(f64) -> f64) -> State<DVec2> {
+        let cells = (0..400).map(|k| DVec2::new(f64::from(k % 20), f64::from(k / 20)) * 2.0 + DVec2::ONE);
+        let positions: Vec<DVec2> = cells.collect();
+        let velocities = positions.iter().map(|p| DVec2::new(velocity(p.y), 0.3)).collect();
+        (bed.gas(time, positions, velocities), Totals::default())
+    }
+
+    #[test]
+    fn a_linear_field_has_slope_one() {
+        let bed = sheared();
+        // Only what is before `from`, and the outer tenths, leave the line.
+        let states: Vec<_> = (0..30)
+            .map(|k| {
+                let slipping = move |y: f64| if (4.0..36.0).contains(&y) { y / 40.0 - 0.5 } else { 7.0 };
+                flowing(&bed, f64::from(k), move |y| if k < 10 { 3.0 } else { slipping(y) })
+            })
+            .collect();
+        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        let (slope, error) = figure_of(&mut measure, &states, 10.0, "velocity_profile_slope");
+        assert!((slope.unwrap() - 1.0).abs() < 1e-14, "{slope:?}");
+        assert!(error.unwrap() < 1e-14);
+        let (r_squared, _) = figure_of(&mut measure, &states, 10.0, "velocity_profile_r_squared");
+        assert!((r_squared.unwrap() - 1.0).abs() < 1e-14);
+        let (gas, totals) = &states[29];
+        let (profiles, _) = measure.conclusion(&Snapshot { gas, totals }, 10.0);
+        assert_eq!(profiles[0].values[0][..2], [1.0, 3.0]);
+        assert!((profiles[0].values[1][10] - (21.0 / 40.0 - 0.5)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_error_comes_from_blocks() {
+        let bed = sheared();
+        // Slopes 0.9 and 1.1 in turn, one block each: s = 0.2/2 · √(10/9), over √10.
+        let states: Vec<_> = (0..10)
+            .map(|k| flowing(&bed, f64::from(k), move |y| (0.9 + 0.2 * f64::from(k % 2)) * (y / 40.0)))
+            .collect();
+        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        let (slope, error) = figure_of(&mut measure, &states, 0.0, "velocity_profile_slope");
+        assert!((slope.unwrap() - 1.0).abs() < 1e-13);
+        assert!((error.unwrap() - 0.1 / 3.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn it_follows_the_walls_in_three_dimensions() {
+        let mut bed = scenario_of(DVec3::splat(20.0), [10; 3]);
+        assert!(VelocityProfile::new(&bed.scenario).is_none());
+        bed.walls(2, rough(DVec3::ZERO), rough(DVec3::new(0.0, -3.0, 0.0)));
+        let positions: Vec<DVec3> = (0..10).map(|k| DVec3::splat(f64::from(2 * k + 1))).collect();
+        let velocities = positions.iter().map(|p| DVec3::new(9.0, -3.0 * p.z / 20.0, 9.0)).collect();
+        let state = (bed.gas(1.0, positions, velocities), Totals::default());
+        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        show(&mut measure, &state);
+        let (slope, error) = figure_of(&mut measure, &[state], 0.0, "velocity_profile_slope");
+        assert!((slope.unwrap() - 1.0).abs() < 1e-14);
+        assert_eq!(error, None);
+    }
+
+    #[test]
+    fn it_resumes() {
+        let bed = sheared();
+        let make = || Box::new(VelocityProfile::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec2>>;
+        assert_resumes(make, &bed.random_states(30, 300));
+    }
+}
