@@ -1,2 +1,7 @@
-//! The command line.
-fn main() {}
+//! grainflow: parse, run, exit code.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    grainflow::cli::main()
+}

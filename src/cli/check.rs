@@ -1,0 +1,26 @@
+//! `grainflow check`.
+
+use clap::Args;
+
+use super::input::ScenarioInput;
+use super::{Exit, complain};
+
+/// Tell what a scenario means, or all that is wrong with it; runs nothing
+#[derive(Args, Debug)]
+pub(super) struct CheckArguments {
+    #[command(flatten)]
+    input: ScenarioInput,
+}
+
+pub(super) fn check(arguments: &CheckArguments) -> Exit {
+    match arguments.input.load() {
+        Ok(scenario) => {
+            println!("{}", crate::scenario::check::check(&scenario));
+            Exit::Done
+        }
+        Err(error) => {
+            complain(&error);
+            Exit::BadInput
+        }
+    }
+}

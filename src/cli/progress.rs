@@ -1,0 +1,73 @@
+//! How a run is going: a bar on a terminal, a line now and then elsewhere.
+
+use std::io::{IsTerminal, stderr};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::run::Status;
+use crate::stopwatch::Stopwatch;
+
+/// Seconds between two refreshes of the bar.
+const BAR_SECONDS: f64 = 0.1;
+/// Seconds between two lines where there is no terminal.
+const LINE_SECONDS: f64 = 10.0;
+/// Steps of the bar.
+const BAR_LENGTH: u64 = 1000;
+
+/// Tells how a run is going.
+pub(super) struct Progress {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+    watch: Stopwatch,
+    last: f64,
+    last_steps: u64,
+}
+
+impl Progress {
+    pub(super) fn new(quiet: bool) -> Self {
+        let bar = (!quiet && stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(BAR_LENGTH);
+            bar.set_style(
+                ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {eta} left")
+                    .expect("the template is part of the program"),
+            );
+            bar
+        });
+        Progress { bar, quiet, watch: Stopwatch::default(), last: 0.0, last_steps: 0 }
+    }
+
+    /// Shows `status`, if it is time to.
+    pub(super) fn tell(&mut self, status: &Status) {
+        if self.quiet {
+            return;
+        }
+        let now = self.watch.seconds();
+        let pause = now - self.last;
+        if pause < if self.bar.is_some() { BAR_SECONDS } else { LINE_SECONDS } {
+            return;
+        }
+        let speed = (status.particle_steps - self.last_steps) as f64 / pause;
+        (self.last, self.last_steps) = (now, status.particle_steps);
+        let line = format!(
+            "t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M particle-steps/s",
+            status.time,
+            status.grains,
+            status.collisions_per_particle,
+            speed * 1e-6
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((status.progress * BAR_LENGTH as f64) as u64);
+                bar.set_message(line);
+            }
+            None => eprintln!("{:3.0} %  {line}", 100.0 * status.progress),
+        }
+    }
+
+    /// Leaves the line free.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! `grainflow run`.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
+
+use clap::Args;
+use serde_json::Value;
+
+use super::input::ScenarioInput;
+use super::progress::Progress;
+use super::{Exit, complain};
+use crate::run::{Outcome, RunError};
+use crate::scenario::model::AnyScenario;
+
+/// Run a scenario and write a run folder: log, tables, summary, report
+#[derive(Args, Debug)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    input: ScenarioInput,
+
+    /// Folder to write to [default: out/<scenario>-<engine>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Replace what the folder holds, once the new run is complete
+    #[arg(long)]
+    force: bool,
+
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Set by the first interrupt: the run ends at its next step.
+static STOP: AtomicBool = AtomicBool::new(false);
+/// How often the user has asked to stop.
+static INTERRUPTS: AtomicU32 = AtomicU32::new(0);
+
+pub(super) fn run(arguments: &RunArguments) -> Exit {
+    let scenario = match arguments.input.load() {
+        Ok(scenario) => scenario,
+        Err(error) => {
+            complain(&error);
+            return Exit::BadInput;
+        }
+    };
+    if let Err(error) = prepare(arguments.threads) {
+        complain(&error);
+        return Exit::RunFailed;
+    }
+    let folder = arguments.out.clone().unwrap_or_else(|| usual_folder(&scenario));
+    let mut progress = Progress::new(arguments.quiet);
+    let result =
+        crate::run::run(&scenario, &folder, arguments.force, &STOP, &mut |status| progress.tell(status));
+    progress.finish();
+    match result {
+        Ok(outcome) => {
+            if !arguments.quiet {
+                print!("{}", closing_words(&outcome));
+            }
+            if outcome.interrupted { Exit::Interrupted } else { Exit::Done }
+        }
+        Err(error) => {
+            complain(&error);
+            if is_bad_input(&error) { Exit::BadInput } else { Exit::RunFailed }
+        }
+    }
+}
+
+fn is_bad_input(error: &RunError) -> bool {
+    error.is_bad_input()
+}
+
+/// Starts the threads and listens for Ctrl-C and SIGTERM: the first ends the run cleanly, a
+/// second ends the program at once.
+fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Error>> {
+    let threads = threads.map_or(0, usize::from);
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    ctrlc::set_handler(|| {
+        STOP.store(true, SeqCst);
+        if INTERRUPTS.fetch_add(1, SeqCst) > 0 {
+            std::process::exit(Exit::Interrupted as i32);
+        }
+    })?;
+    Ok(())
+}
+
+fn usual_folder(scenario: &AnyScenario) -> PathBuf {
+    let (name, engine) = match scenario {
+        AnyScenario::Two(scenario) => (&scenario.name, scenario.engine.kind),
+        AnyScenario::Three(scenario) => (&scenario.name, scenario.engine.kind),
+    };
+    PathBuf::from("out").join(format!("{name}-{}", engine.name()))
+}
+
+/// What a user wants to know when a run has ended.
+fn closing_words(outcome: &Outcome) -> String {
+    let mut text = String::new();
+    let summary = &outcome.summary;
+    let number = |key: &str| summary.get(key).and_then(Value::as_f64);
+    let ended = match outcome.interrupted {
+        true => "interrupted".to_owned(),
+        false => format!("ended by its limit on {}", summary["end_reason"].as_str().unwrap_or("?")),
+    };
+    text += &format!(
+        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {} steps, {:.1} s\n",
+        summary["scenario"].as_str().unwrap_or("?"),
+        summary["engine"].as_str().unwrap_or("?"),
+        number("simulated_time").unwrap_or(0.0),
+        number("collisions_per_particle").unwrap_or(0.0),
+        summary["steps"],
+        number("wall_seconds").unwrap_or(0.0),
+    );
+    for (name, value) in summary.iter() {
+        let Some(error) = summary.get(&format!("{name}_standard_error")) else { continue };
+        let Some(value) = value.as_f64() else { continue };
+        let error = error.as_f64().map(|error| format!(" ± {error:.2e}")).unwrap_or_default();
+        text += &format!("  {name:<28} {value:.6}{error}\n");
+    }
+    let total: f64 = outcome.laps.iter().map(|(_, seconds)| seconds).sum();
+    let laps: Vec<String> = outcome
+        .laps
+        .iter()
+        .filter(|(_, seconds)| *seconds >= 0.01 * total)
+        .map(|(verb, seconds)| format!("{verb} {:.0} %", 100.0 * seconds / total))
+        .collect();
+    text += &format!("  time went to: {}\n", laps.join(", "));
+    if let Some(speed) = number("particle_steps_per_second") {
+        text += &format!("  {:.1} million particle-steps per second\n", speed * 1e-6);
+    }
+    text += &format!("wrote {}\n", outcome.folder.join("report.html").display());
+    text
+}

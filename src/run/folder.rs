@@ -1,0 +1,107 @@
+//! The folder of a run: claimed before anything is written, and never at the cost of an older run.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::stopwatch::process_number;
+
+/// Why a folder cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// There is something in it.
+    #[error("{} already holds something; choose another folder with --out, or replace it with --force", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The system refuses.
+    #[error("cannot use {} as a run folder: {source}", path.display())]
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// A folder that a run writes to.
+#[derive(Debug)]
+pub struct RunFolder {
+    /// Where files are written now.
+    working: PathBuf,
+    /// Where they shall stand.
+    wanted: PathBuf,
+}
+
+impl RunFolder {
+    /// Makes the folder. One that holds something is refused; with `force` the run is written beside it
+    /// and takes its place at the end, so that the old run survives a failure.
+    pub fn claim(wanted: &Path, force: bool) -> Result<Self, FolderError> {
+        let occupied = is_occupied(wanted).map_err(|source| io_error(wanted, source))?;
+        if occupied && !force {
+            return Err(FolderError::Exists { path: wanted.to_owned() });
+        }
+        let working = if occupied { beside(wanted, "new") } else { wanted.to_owned() };
+        fs::create_dir_all(&working).map_err(|source| io_error(&working, source))?;
+        Ok(RunFolder { working, wanted: wanted.to_owned() })
+    }
+
+    /// Where to write.
+    pub fn path(&self) -> &Path {
+        &self.working
+    }
+
+    /// Puts the run in its place, and returns that.
+    pub fn settle(self) -> Result<PathBuf, FolderError> {
+        if self.working != self.wanted {
+            let old = beside(&self.wanted, "old");
+            fs::rename(&self.wanted, &old).map_err(|source| io_error(&self.wanted, source))?;
+            fs::rename(&self.working, &self.wanted).map_err(|source| io_error(&self.wanted, source))?;
+            remove(&old).map_err(|source| io_error(&old, source))?;
+        }
+        Ok(self.wanted)
+    }
+}
+
+fn is_occupied(path: &Path) -> io::Result<bool> {
+    match fs::read_dir(path) {
+        Ok(mut entries) => Ok(entries.next().is_some()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Ok(true),
+        Err(error) => Err(error),
+    }
+}
+
+fn beside(path: &Path, word: &str) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    path.with_file_name(format!("{name}.{word}-{}", process_number()))
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
+}
+
+fn io_error(path: &Path, source: io::Error) -> FolderError {
+    FolderError::Io { path: path.to_owned(), source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_old_run_is_refused_or_replaced_at_the_end() {
+        let place = tempfile::tempdir().unwrap();
+        let wanted = place.path().join("run");
+        fs::create_dir(&wanted).unwrap();
+        fs::write(wanted.join("log.mcap"), "old").unwrap();
+        assert!(matches!(RunFolder::claim(&wanted, false), Err(FolderError::Exists { .. })));
+        let folder = RunFolder::claim(&wanted, true).unwrap();
+        fs::write(folder.path().join("log.mcap"), "new").unwrap();
+        assert_eq!(fs::read_to_string(wanted.join("log.mcap")).unwrap(), "old");
+        folder.settle().unwrap();
+        assert_eq!(fs::read_to_string(wanted.join("log.mcap")).unwrap(), "new");
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+}

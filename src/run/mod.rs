@@ -1,0 +1,216 @@
+//! Runs a scenario into a folder: log, tables, summary, report.
+
+pub mod folder;
+mod recorder;
+mod series;
+mod summary;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use serde_json::{Map, Value};
+
+use crate::observe::moments;
+use crate::record::error::LogError;
+use crate::record::reader::{last_state, read_log};
+use crate::report;
+use crate::scenario::initial::{self, InitialError};
+use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use crate::simulation::{Simulation, SimulationError};
+use crate::space::Vector;
+use crate::stopwatch::Stopwatch;
+use folder::{FolderError, RunFolder};
+use recorder::Recorder;
+use summary::Ending;
+
+/// Raised whenever a release changes the bits of a trajectory.
+pub const NUMERICS: u32 = 1;
+
+/// Why a run could not be made, or not to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The folder cannot be used.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The initial state cannot be built.
+    #[error(transparent)]
+    Initial(#[from] InitialError),
+    /// The initial state cannot be read from its log.
+    #[error("initial.positions: {0}")]
+    InitialLog(LogError),
+    /// The log cannot be written.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// Another file of the run folder cannot be written.
+    #[error("cannot write {}: {source}; what was written before is kept", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The simulation cannot go on. The log holds everything up to here.
+    #[error("{source}\nthe log up to this time is {}", log.display())]
+    Simulation {
+        /// What happened.
+        source: SimulationError,
+        /// The log.
+        log: PathBuf,
+    },
+}
+
+impl RunError {
+    /// Whether the input is at fault, rather than the run.
+    pub fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            RunError::Folder(FolderError::Exists { .. }) | RunError::Initial(_) | RunError::InitialLog(_)
+        )
+    }
+}
+
+/// How a run looks from outside while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Status {
+    /// Share of the run that is done, in [0, 1].
+    pub progress: f64,
+    /// Simulated time [time].
+    pub time: f64,
+    /// Collisions per particle so far.
+    pub collisions_per_particle: f64,
+    /// Grains now.
+    pub grains: usize,
+    /// Particle-steps so far.
+    pub particle_steps: u64,
+}
+
+/// What a finished run leaves.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The folder with everything in it.
+    pub folder: PathBuf,
+    /// The summary.
+    pub summary: Map<String, Value>,
+    /// Whether somebody stopped the run before its end.
+    pub interrupted: bool,
+    /// Seconds of each verb of the algorithm.
+    pub laps: Vec<(&'static str, f64)>,
+}
+
+/// Runs `scenario` into `folder` until its end, or until `stop` turns true. `tell` hears of every step.
+pub fn run(
+    scenario: &AnyScenario,
+    folder: &Path,
+    force: bool,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(&Status),
+) -> Result<Outcome, RunError> {
+    match scenario {
+        AnyScenario::Two(scenario) => run_in(scenario, folder, force, stop, tell),
+        AnyScenario::Three(scenario) => run_in(scenario, folder, force, stop, tell),
+    }
+}
+
+fn run_in<V: Vector>(
+    scenario: &Scenario<V>,
+    folder: &Path,
+    force: bool,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(&Status),
+) -> Result<Outcome, RunError> {
+    let mut watch = Stopwatch::default();
+    let gas = initial_gas(scenario)?;
+    let folder = RunFolder::claim(folder, force)?;
+    let log = folder.path().join("log.mcap");
+    let failed = |source| RunError::Simulation { source, log: log.clone() };
+    let mut simulation = Simulation::start(scenario, gas, &mut Stopwatch::default()).map_err(failed)?;
+    let mut recorder = Recorder::create(&log, &mut simulation)?;
+    let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
+    watch.stop();
+    let ending = match ended {
+        Ok(ending) => ending,
+        Err(StepError::Log(error)) => return Err(error.into()),
+        Err(StepError::Simulation(source)) => {
+            recorder.finish_after_failure()?;
+            return Err(RunError::Simulation { source, log });
+        }
+    };
+    let (profiles, figures) = recorder.finish(&mut simulation)?;
+    let summary = summary::summary(&simulation, ending, &watch, figures);
+    series::write_tables(folder.path(), scenario, &recorder, &profiles)?;
+    write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
+    write_text(&folder.path().join("report.html"), &report::render(&read_log(&log)?, &summary))?;
+    let folder = folder.settle()?;
+    Ok(Outcome { folder, summary, interrupted: ending == Ending::Interrupted, laps: watch.laps().to_vec() })
+}
+
+/// Why a step or its recording failed.
+enum StepError {
+    Simulation(SimulationError),
+    Log(LogError),
+}
+
+/// Record, advance, until an end is reached or asked for.
+fn go_on<V: Vector>(
+    simulation: &mut Simulation<'_, V>,
+    recorder: &mut Recorder,
+    watch: &mut Stopwatch,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(&Status),
+) -> Result<Ending, StepError> {
+    use crate::engine::Laps;
+    loop {
+        watch.start("recording");
+        recorder.record_if_due(simulation).map_err(StepError::Log)?;
+        tell(&status(simulation));
+        if let Some(reason) = simulation.end_reason() {
+            return Ok(Ending::Reached(reason));
+        }
+        if stop.load(Relaxed) {
+            return Ok(Ending::Interrupted);
+        }
+        simulation.advance(watch).map_err(StepError::Simulation)?;
+    }
+}
+
+fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
+    Status {
+        progress: simulation.progress(),
+        time: simulation.gas().time(),
+        collisions_per_particle: simulation.totals().collisions_per_particle,
+        grains: simulation.gas().len(),
+        particle_steps: simulation.totals().particle_steps,
+    }
+}
+
+/// The gas that the scenario begins with, read from a log if it says so.
+fn initial_gas<V: Vector>(
+    scenario: &Scenario<V>,
+) -> Result<crate::matter::gas::Gas<V>, RunError> {
+    let saved = match &scenario.initial.positions {
+        InitialPositions::Log(path) => {
+            let state = last_state::<V>(path).map_err(RunError::InitialLog)?;
+            Some(state.map(|state| state.columns).unwrap_or_default())
+        }
+        _ => None,
+    };
+    Ok(initial::build(scenario, saved)?)
+}
+
+fn write_text(path: &Path, text: &str) -> Result<(), RunError> {
+    std::fs::write(path, text).map_err(|source| RunError::Write { path: path.to_owned(), source })
+}
+
+fn pretty(summary: &Map<String, Value>) -> String {
+    serde_json::to_string_pretty(summary).expect("a map of numbers and texts is JSON")
+}
+
+/// Momentum that got lost, relative to Σ m|v(0)|; only a closed box without gravity keeps it.
+fn momentum_drift<V: Vector>(simulation: &Simulation<'_, V>) -> Option<f64> {
+    let scenario = simulation.scenario();
+    let closed = scenario.boundary.is_fully_periodic() && scenario.gravity == V::ZERO;
+    let beginning = simulation.beginning();
+    (closed && beginning.momentum_scale > 0.0).then(|| {
+        (moments::momentum(simulation.gas()) - beginning.momentum).length() / beginning.momentum_scale
+    })
+}

@@ -1,0 +1,178 @@
+//! Records a run: measures, frames and states at their times, into the log.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::NUMERICS;
+use crate::matter::state_hash::state_hash;
+use crate::observe::measure::{Column, Dimension, Figure, Profile};
+use crate::record::error::LogError;
+use crate::record::frame::frame;
+use crate::record::time_scale::time_scale;
+use crate::record::writer::{LogHeader, LogWriter, Recording};
+use crate::scenario::geometry::walls;
+use crate::scenario::model::{RecordPlan, Scenario, Spacing};
+use crate::simulation::Simulation;
+use crate::simulation::schedule::Spread;
+use crate::space::Vector;
+
+/// Writes the log and keeps the series for the tables.
+pub(super) struct Recorder {
+    writer: LogWriter,
+    frames: Spread,
+    states: Spread,
+    recordings: u64,
+    states_saved: u64,
+    last_recorded_step: Option<u64>,
+    /// Columns of the series; the first is the time.
+    pub(super) columns: Vec<Column>,
+    /// `[recording][column]`.
+    pub(super) series: Vec<Vec<f64>>,
+    /// Profiles taken at recordings.
+    pub(super) profiles: Vec<Profile>,
+    /// `[measure]`: whether its series and profiles are stored.
+    stored: Vec<bool>,
+}
+
+impl Recorder {
+    /// Begins the log of a run that is about to start.
+    pub(super) fn create<V: Vector>(path: &Path, simulation: &mut Simulation<'_, V>) -> Result<Self, LogError> {
+        let scenario = simulation.scenario();
+        let plan = &scenario.record;
+        let (measures, _) = simulation.observation();
+        let is_stored = |name: &str| plan.measures.as_ref().is_none_or(|names| names.iter().any(|n| n == name));
+        let stored: Vec<bool> = measures.iter().map(|measure| is_stored(measure.name())).collect();
+        let mut columns =
+            vec![Column { name: "time".to_owned(), unit: Dimension { time: 1, ..Dimension::default() } }];
+        for (measure, _) in measures.iter().zip(&stored).filter(|(_, stored)| **stored) {
+            columns.extend(measure.columns());
+        }
+        let header = LogHeader {
+            metadata: metadata(scenario),
+            scenario: scenario.source_text.clone(),
+            columns: columns.clone(),
+            walls: Some(walls(scenario)),
+            start: 0.0,
+            time_scale: expected_time_scale(scenario),
+        };
+        Ok(Recorder {
+            writer: LogWriter::create(path, &header)?,
+            frames: spread(plan),
+            states: Spread::Inside(plan.states),
+            recordings: 0,
+            states_saved: 0,
+            last_recorded_step: None,
+            columns,
+            series: Vec::new(),
+            profiles: Vec::new(),
+            stored,
+        })
+    }
+
+    /// Makes the recording and saves the state that are due, if any.
+    pub(super) fn record_if_due<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
+        let (time, progress) = (simulation.gas().time(), simulation.progress());
+        if self.frames.is_due(self.recordings, time, progress) {
+            self.record(simulation)?;
+            self.recordings = self.frames.next(time, progress).max(self.recordings + 1);
+        }
+        if self.states.is_due(self.states_saved, time, progress) {
+            self.writer.state(&simulation.saved_state(self.recordings))?;
+            self.states_saved = self.states.next(time, progress);
+        }
+        Ok(())
+    }
+
+    /// Records the end, the profiles of the whole run and the last state; returns all profiles and figures.
+    pub(super) fn finish<V: Vector>(
+        &mut self,
+        simulation: &mut Simulation<'_, V>,
+    ) -> Result<(Vec<Profile>, Vec<Figure>), LogError> {
+        if self.last_recorded_step != Some(simulation.totals().steps) {
+            self.record(simulation)?;
+        }
+        let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
+        let mut figures = Vec::new();
+        let mut profiles = Vec::new();
+        let (measures, snapshot) = simulation.observation();
+        for (measure, &stored) in measures.iter().zip(&self.stored) {
+            let (concluded, of_measure) = measure.conclusion(&snapshot, from);
+            figures.extend(of_measure);
+            profiles.extend(concluded.into_iter().filter(|_| stored));
+        }
+        for profile in &profiles {
+            self.writer.profile(profile)?;
+        }
+        self.writer.state(&simulation.saved_state(self.recordings))?;
+        self.writer.finish()?;
+        self.profiles.extend(profiles.iter().cloned());
+        Ok((std::mem::take(&mut self.profiles), figures))
+    }
+
+    /// Ends the log of a run that cannot go on; what was recorded stays readable.
+    pub(super) fn finish_after_failure(&mut self) -> Result<(), LogError> {
+        self.writer.finish()
+    }
+
+    fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
+        let most_points = simulation.scenario().record.points.map(|points| points as usize);
+        let hash = state_hash(simulation.gas());
+        let step = simulation.totals().steps;
+        let (measures, snapshot) = simulation.observation();
+        let mut values = vec![snapshot.gas.time()];
+        let mut profiles = Vec::new();
+        for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
+            values.extend(measure.values(&snapshot));
+            profiles.extend(measure.profiles(&snapshot));
+        }
+        let frame = frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+        self.writer.recording(&Recording {
+            values: &values,
+            state_hash: &hash,
+            profiles: &profiles,
+            frame: &frame,
+        })?;
+        self.series.push(values);
+        self.profiles.extend(profiles);
+        self.last_recorded_step = Some(step);
+        Ok(())
+    }
+}
+
+fn spread(plan: &RecordPlan) -> Spread {
+    match plan.spacing {
+        Spacing::Frames(number) => Spread::Even(number),
+        Spacing::LogFrames(number) => Spread::Logarithmic(number),
+        Spacing::Every(interval) => Spread::Every(interval),
+        Spacing::Ends => Spread::Start,
+    }
+}
+
+/// Ticks per time from what the scenario says of its length and of the pauses between recordings.
+fn expected_time_scale<V: Vector>(scenario: &Scenario<V>) -> u64 {
+    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count) / source.rate);
+    let duration = scenario.run.time.or(scenario.run.rest.map(|rest| rest + poured));
+    let interval = match scenario.record.spacing {
+        Spacing::Every(interval) => Some(interval),
+        Spacing::Frames(number) => duration.map(|duration| duration / f64::from(number.max(1))),
+        Spacing::LogFrames(_) => duration.map(|duration| duration * 1e-3),
+        Spacing::Ends => duration,
+    };
+    time_scale(duration.unwrap_or(f64::INFINITY), interval.unwrap_or(0.0))
+}
+
+fn metadata<V: Vector>(scenario: &Scenario<V>) -> BTreeMap<String, String> {
+    let entries = [
+        ("scenario", scenario.name.clone()),
+        ("title", scenario.title.clone()),
+        ("engine", scenario.engine.kind.name().to_owned()),
+        ("dimension", V::DIMENSION.to_string()),
+        ("seed", scenario.seed.to_string()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("numerics", NUMERICS.to_string()),
+        ("unit_length", scenario.units.length.clone()),
+        ("unit_mass", scenario.units.mass.clone()),
+        ("unit_time", scenario.units.time.clone()),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}

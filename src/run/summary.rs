@@ -1,0 +1,108 @@
+//! `summary.json`: one flat object that says what a run was and what came out.
+
+use serde_json::{Map, Value, json};
+
+use super::{NUMERICS, momentum_drift};
+use crate::matter::state_hash::state_hash;
+use crate::observe::measure::Figure;
+use crate::observe::moments;
+use crate::simulation::Simulation;
+use crate::simulation::limits::EndReason;
+use crate::space::Vector;
+use crate::stopwatch::{Stopwatch, peak_memory_bytes};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ending {
+    Reached(EndReason),
+    Interrupted,
+}
+
+/// Verbs that do not advance the state.
+const NOT_ADVANCING: [&str; 2] = ["recording", "measures"];
+
+/// The summary of a run that has ended. What does not apply is null.
+pub(super) fn summary<V: Vector>(
+    simulation: &Simulation<'_, V>,
+    ending: Ending,
+    watch: &Stopwatch,
+    figures: Vec<Figure>,
+) -> Map<String, Value> {
+    let mut summary = what_ran(simulation);
+    summary.append(&mut what_happened(simulation, ending));
+    summary.append(&mut what_it_cost(simulation, watch));
+    summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
+    for figure in figures {
+        let error = format!("{}_standard_error", figure.name);
+        summary.insert(figure.name, json!(figure.value.filter(|value| value.is_finite())));
+        summary.insert(error, json!(figure.standard_error.filter(|value| value.is_finite())));
+    }
+    summary
+}
+
+fn what_ran<V: Vector>(simulation: &Simulation<'_, V>) -> Map<String, Value> {
+    let scenario = simulation.scenario();
+    let (initial, last) = (simulation.beginning().particles, simulation.gas().len() as u64);
+    let grains = if initial > 0 { initial } else { last };
+    let volume_fraction = grains as f64 * scenario.grain.volume::<V>() / scenario.size.product();
+    object(json!({
+        "scenario": scenario.name,
+        "engine": scenario.engine.kind.name(),
+        "dimension": V::DIMENSION,
+        "particles_initial": initial,
+        "particles_final": last,
+        "volume_fraction": volume_fraction,
+        "seed": scenario.seed,
+        "threads": rayon::current_num_threads(),
+        "version": env!("CARGO_PKG_VERSION"),
+        "numerics": NUMERICS,
+    }))
+}
+
+fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> Map<String, Value> {
+    let (gas, totals) = (simulation.gas(), simulation.totals());
+    let end_reason = match ending {
+        Ending::Reached(reason) => reason.name(),
+        Ending::Interrupted => "interrupted",
+    };
+    object(json!({
+        "steps": totals.steps,
+        "steps_capped": totals.steps_capped,
+        "events": null,
+        "collisions": totals.counts.collisions,
+        "candidates": totals.counts.candidates,
+        "cell_collisions": simulation.capacity().map(|_| totals.counts.cell_collisions),
+        "rejected_moves": simulation.capacity().map(|_| totals.counts.rejected_moves),
+        "cell_capacity": simulation.capacity(),
+        "largest_occupancy": gas.largest_occupancy(),
+        "poured": simulation.scenario().source.as_ref().map(|_| totals.poured),
+        "removed": totals.counts.removed,
+        "collisions_per_particle": totals.collisions_per_particle,
+        "simulated_time": gas.time(),
+        "end_reason": end_reason,
+        "interrupted": ending == Ending::Interrupted,
+        "kinetic_energy_initial": simulation.beginning().kinetic_energy,
+        "kinetic_energy_final": moments::kinetic_energy(gas),
+        "temperature": moments::temperature(gas),
+        "momentum_drift": momentum_drift(simulation),
+    }))
+}
+
+fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) -> Map<String, Value> {
+    let advancing: f64 =
+        watch.laps().iter().filter(|(verb, _)| !NOT_ADVANCING.contains(verb)).map(|(_, seconds)| seconds).sum();
+    let rate = simulation.totals().particle_steps as f64 / advancing;
+    object(json!({
+        "wall_seconds": watch.seconds(),
+        "particle_steps_per_second": rate.is_finite().then_some(rate),
+        "events_per_second": null,
+        "peak_memory_bytes": peak_memory_bytes(),
+    }))
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
+}

@@ -1,0 +1,66 @@
+//! The wall clock and the machine: the only file that looks at either.
+
+use std::time::Instant;
+
+use crate::engine::Laps;
+
+/// Measures how long each verb of the algorithm takes.
+#[derive(Clone, Debug)]
+pub struct Stopwatch {
+    started: Instant,
+    lap_started: Instant,
+    verb: Option<&'static str>,
+    laps: Vec<(&'static str, f64)>,
+}
+
+impl Default for Stopwatch {
+    fn default() -> Self {
+        let now = Instant::now();
+        Stopwatch { started: now, lap_started: now, verb: None, laps: Vec::new() }
+    }
+}
+
+impl Laps for Stopwatch {
+    fn start(&mut self, verb: &'static str) {
+        self.stop();
+        self.verb = Some(verb);
+    }
+}
+
+impl Stopwatch {
+    /// Ends the lap that is running; time goes to nobody until the next one starts.
+    pub fn stop(&mut self) {
+        let now = Instant::now();
+        if let Some(verb) = self.verb.take() {
+            let seconds = (now - self.lap_started).as_secs_f64();
+            match self.laps.iter_mut().find(|(name, _)| *name == verb) {
+                Some((_, total)) => *total += seconds,
+                None => self.laps.push((verb, seconds)),
+            }
+        }
+        self.lap_started = now;
+    }
+
+    /// Seconds since the stopwatch was made.
+    pub fn seconds(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Seconds of each verb, in the order of their first laps.
+    pub fn laps(&self) -> &[(&'static str, f64)] {
+        &self.laps
+    }
+}
+
+/// The most memory this process has held so far, where the system tells [bytes].
+pub fn peak_memory_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+/// A number that differs from process to process, for names of temporary files.
+pub fn process_number() -> u32 {
+    std::process::id()
+}
