@@ -1,4 +1,85 @@
 //! What a run is made of: a checked scenario. Only this module makes one,
 //! so to hold a `Scenario` is the proof that it was checked.
 
+mod bound;
+pub mod builtin;
+mod cells;
+pub mod check;
+mod consistency;
+pub mod error;
+mod estimate;
+mod file;
+pub mod geometry;
+pub mod initial;
+mod locate;
 pub mod model;
+mod overrides;
+mod path;
+mod read;
+mod reader;
+mod schema;
+mod suggest;
+mod tables;
+mod walls;
+
+use toml_edit::{Document, TomlError};
+
+pub use error::ScenarioError;
+use error::{Mistake, Place};
+use locate::{Locator, line_of};
+use model::AnyScenario;
+pub use overrides::Overrides;
+use reader::{Reader, Section};
+pub use schema::MEASURES;
+
+/// The scenario that `source` names, a file or a built-in one, with `overrides`.
+pub fn load(source: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
+    let (name, text) = file::fetch(source)?;
+    parse_as(source, &name, &text, overrides)
+}
+
+/// The scenario called `name` that `text` describes, with `overrides`.
+pub fn parse(name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
+    parse_as(name, name, text, overrides)
+}
+
+fn parse_as(file: &str, name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
+    let original = document(file, text)?;
+    if original.as_table().is_empty() && overrides.sets.is_empty() {
+        let message = "holds no scenario; `grainflow scenarios show shear` prints one to start from";
+        return Err(ScenarioError::of_file(file, message.to_owned()));
+    }
+    let mut changed = original.clone().into_mut();
+    let (changes, mut mistakes) = overrides.apply(&mut changed);
+    // Without a change the text stays as it was written, byte for byte.
+    let source_text = if changes.is_empty() { text.to_owned() } else { changed.to_string() };
+    let reader = Reader::new(Locator::new(original, changes));
+    let root = Section::root(&reader, changed.as_table(), schema::ROOT);
+    let scenario = if tables::head::dimension(&root) == 3 {
+        read::read(&root, name, source_text).map(AnyScenario::Three)
+    } else {
+        read::read(&root, name, source_text).map(AnyScenario::Two)
+    };
+    mistakes.extend(reader.into_mistakes());
+    match scenario {
+        Some(scenario) if mistakes.is_empty() => Ok(scenario),
+        _ => {
+            debug_assert!(!mistakes.is_empty(), "a scenario that cannot be made has a mistake");
+            Err(ScenarioError::sorted(file, mistakes))
+        }
+    }
+}
+
+/// The spanned tree of `text`.
+fn document(file: &str, text: &str) -> Result<Document<String>, ScenarioError> {
+    Document::parse(text.to_owned()).map_err(|error: TomlError| {
+        let place =
+            error.span().map_or(Place::File, |span| Place::Line(line_of(text.as_bytes(), span.start)));
+        let message = format!("is not TOML: {}; mend this first", error.message().replace('\n', ", "));
+        let mistake = Mistake { place, key: String::new(), message };
+        ScenarioError { file: file.to_owned(), mistakes: vec![mistake] }
+    })
+}
+
+#[cfg(test)]
+mod tests;

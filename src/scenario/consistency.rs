@@ -1,0 +1,157 @@
+//! What the tables of a scenario owe each other.
+
+use super::model::{InitialPositions, InitialVelocities, RunLimits};
+use super::reader::Section;
+use super::tables::initial::InitialTable;
+use super::tables::particles::MOST_GRAINS;
+use crate::law::boundary::Boundary;
+use crate::law::source::Source;
+use crate::space::Vector;
+
+/// The scenario as far as it is known; `None` for what is wrong.
+#[derive(Clone, Debug)]
+pub(super) struct Story<'a, V> {
+    pub(super) gravity: Option<V>,
+    pub(super) size: Option<V>,
+    pub(super) boundary: Option<&'a Boundary<V>>,
+    pub(super) count: Option<u32>,
+    pub(super) source: Option<Option<&'a Source<V>>>,
+    pub(super) diameter: Option<f64>,
+    pub(super) run: Option<RunLimits>,
+}
+
+/// Notes contradictions between the tables; `None` when there is one.
+pub(super) fn check<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
+    let checks = [room(root, story), grains(root, story), fall(root, story), end(root, story)];
+    checks.into_iter().all(|check| check.is_some()).then_some(())
+}
+
+/// A grain fits into the box.
+fn room<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
+    let (size, diameter) = (story.size?, story.diameter?);
+    for axis in 0..V::DIMENSION {
+        if size[axis] < diameter {
+            root.mistake(
+                "domain.size",
+                format!(
+                    "{} along {} is less than the diameter {diameter} of a grain; enlarge it",
+                    size[axis],
+                    V::AXIS_NAMES[axis]
+                ),
+            );
+            return None;
+        }
+    }
+    Some(())
+}
+
+/// There are grains, and no more than can be named.
+fn grains<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
+    match (story.count?, story.source?) {
+        (0, None) => {
+            root.mistake(
+                "particles.count",
+                "0 grains and no [source]: nothing to simulate; give a count or a [source]",
+            );
+            None
+        }
+        (count, Some(source)) if u64::from(count) + u64::from(source.count) > MOST_GRAINS => {
+            root.mistake("source.count", format!("makes more than {MOST_GRAINS} grains in all; pour fewer"));
+            None
+        }
+        _ => Some(()),
+    }
+}
+
+/// Poured grains come to an end somewhere.
+fn fall<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
+    let (gravity, boundary, Some(_)) = (story.gravity?, story.boundary?, story.source?) else {
+        return Some(());
+    };
+    for axis in (0..V::DIMENSION).filter(|&axis| gravity[axis] != 0.0 && boundary.is_periodic(axis)) {
+        let name = V::AXIS_NAMES[axis];
+        root.mistake(
+            &format!("boundary.{name}"),
+            format!(
+                "is periodic, so poured grains would fall for ever; write {name}.lower = {{ wall = \"rough\" }} and \
+                 {name}.upper = \"open\""
+            ),
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// The limits can be reached.
+fn end<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
+    let run = story.run?;
+    let only_collisions = RunLimits { collisions_per_particle: None, ..run } == RunLimits::default();
+    let grains = u64::from(story.count?) + story.source?.map_or(0, |source| u64::from(source.count));
+    if only_collisions && grains == 1 {
+        root.mistake(
+            "run.collisions_per_particle",
+            "a single grain never collides; give run.time or run.steps",
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// The initial velocities: as given, or rest where something drives.
+pub(super) fn velocities<V: Vector>(
+    root: &Section<'_>,
+    table: &InitialTable,
+    story: &Story<'_, V>,
+) -> Option<InitialVelocities> {
+    if let (Some(InitialPositions::Log(_)), Some(Some(_))) = (&table.positions, table.velocities) {
+        root.mistake(
+            "initial.velocities",
+            "stands beside a log, which brings its own velocities; leave it out",
+        );
+        return None;
+    }
+    if matches!(table.positions, Some(InitialPositions::Log(_))) {
+        return Some(InitialVelocities::Rest);
+    }
+    let driven =
+        story.gravity? != V::ZERO || story.boundary?.largest_wall_speed() > 0.0 || story.source?.is_some();
+    match table.velocities? {
+        None if !driven => {
+            root.mistake(
+                "initial.velocities",
+                "is missing, and nothing drives the grains; write { maxwell = 1.0 }",
+            );
+            None
+        }
+        Some(InitialVelocities::Rest) if !driven => {
+            root.mistake(
+                "initial.velocities",
+                "\"rest\" without gravity, source or moving wall: nothing would ever move; write { maxwell = 1.0 }",
+            );
+            None
+        }
+        given => Some(given.unwrap_or(InitialVelocities::Rest)),
+    }
+}
+
+/// There is something to equilibrate.
+pub(super) fn equilibration<V: Vector>(
+    root: &Section<'_>,
+    table: &InitialTable,
+    velocities: Option<InitialVelocities>,
+    story: &Story<'_, V>,
+) -> Option<()> {
+    if table.equilibrate? == 0.0 {
+        return Some(());
+    }
+    let message = match (&table.positions, velocities) {
+        (Some(InitialPositions::Log(_)), _) => "a log brings a state of its own; leave equilibrate out",
+        (_, Some(InitialVelocities::Rest)) => {
+            "grains at rest never collide; give initial.velocities = { maxwell = 1.0 } or leave equilibrate out"
+        }
+        _ if story.count? < 2 => "needs at least two grains; leave equilibrate out",
+        _ => return Some(()),
+    };
+    root.mistake("initial.equilibrate", message);
+    None
+}

@@ -1,0 +1,75 @@
+//! What is wrong with a scenario: every mistake at once.
+
+use std::fmt;
+
+/// All mistakes of one scenario, in the order of its lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ScenarioError {
+    /// The file as it was named, or the built-in name.
+    pub file: String,
+    /// At least one.
+    pub mistakes: Vec<Mistake>,
+}
+
+/// One mistake, with what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mistake {
+    /// Where it stands.
+    pub place: Place,
+    /// The key with its tables, such as `engine.hsmc.sweeps`; empty where no key is concerned.
+    pub key: String,
+    /// What is wrong, and the remedy.
+    pub message: String,
+}
+
+/// Where a mistake stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// On this line of the file, counted from 1.
+    Line(usize),
+    /// Nowhere: something is missing, or the file as a whole is wrong.
+    File,
+    /// In an option of the command line, such as `--set #2 'run.time=-1'`.
+    Option(String),
+}
+
+impl ScenarioError {
+    /// One mistake that concerns the file as a whole.
+    pub(super) fn of_file(file: &str, message: String) -> Self {
+        let mistake = Mistake { place: Place::File, key: String::new(), message };
+        ScenarioError { file: file.to_owned(), mistakes: vec![mistake] }
+    }
+
+    /// Mistakes in the order of a reader: the file as a whole, its lines, the options.
+    pub(super) fn sorted(file: &str, mut mistakes: Vec<Mistake>) -> Self {
+        mistakes.sort_by_key(|mistake| match mistake.place {
+            Place::File => (0, 0),
+            Place::Line(line) => (1, line),
+            Place::Option(_) => (2, 0),
+        });
+        mistakes.dedup();
+        ScenarioError { file: file.to_owned(), mistakes }
+    }
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, mistake) in self.mistakes.iter().enumerate() {
+            if k > 0 {
+                writeln!(f)?;
+            }
+            match &mistake.place {
+                Place::Line(line) => write!(f, "{}:{line}: ", self.file)?,
+                Place::File => write!(f, "{}: ", self.file)?,
+                Place::Option(option) => write!(f, "{option}: ")?,
+            }
+            if !mistake.key.is_empty() {
+                write!(f, "{}: ", mistake.key)?;
+            }
+            write!(f, "{}", mistake.message)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for ScenarioError {}

@@ -1,0 +1,184 @@
+//! From a table of keys to a checked scenario.
+
+use super::cells::{CellPlan, Refusal};
+use super::consistency::{self, Story};
+use super::model::{
+    EngineChoice, EngineKind, HsmcRules, Initial, InitialPositions, InitialVelocities, Scenario,
+};
+use super::reader::Section;
+use super::tables::engine::{CellRestitution, EngineTable};
+use super::tables::initial::InitialTable;
+use super::tables::particles::{self, ParticlesTable};
+use super::tables::source::Surroundings;
+use super::tables::{boundary, engine, head, initial, record, run, source};
+use super::walls;
+use crate::law::boundary::Boundary;
+use crate::law::restitution::RestitutionLaw;
+use crate::law::source::Source;
+use crate::matter::grain::Grain;
+use crate::space::Vector;
+
+/// Reads every table and notes every mistake; `None` when there is one.
+pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: String) -> Option<Scenario<V>> {
+    let head = head::read::<V>(root, name);
+    let size = head::size::<V>(root);
+    let engine = engine::read::<V>(root);
+    let axes = boundary::read::<V>(root);
+    let particles = particles::read::<V>(root);
+    let initial = initial::read(root);
+    let diameter = particles.grain.map(|grain| grain.diameter);
+    let source = source::read(root, Surroundings { gravity: head.gravity, size, diameter });
+    let run = run::read(root);
+    let record = record::read(root, run);
+    let units = head::units(root);
+
+    let count = count(root, &particles, size);
+    let restitution = particles.restitution;
+    // An unknown ν or r changes the restitution of walls, not whether they are right.
+    let volume_fraction = volume_fraction(count, particles.grain, size).unwrap_or(0.0);
+    let typical = restitution.map_or(1.0, RestitutionLaw::typical);
+    let boundary = walls::resolve(axes, typical, volume_fraction);
+    let story = Story {
+        gravity: head.gravity,
+        size,
+        boundary: boundary.as_ref(),
+        count,
+        source: source.as_ref().map(Option::as_ref),
+        diameter,
+        run,
+    };
+    let consistent = consistency::check(root, &story);
+    let initial = resolve_initial(root, initial, &story);
+    let boundary = boundary?;
+    let sound =
+        size.map(|size| walls::check_strokes(root, &boundary, size)).is_some_and(|sound| sound.is_some());
+    let grid = match (sound, size, particles.grain, count, &source) {
+        (true, Some(size), Some(grain), Some(count), Some(source)) => {
+            let question = GridQuestion { engine: &engine, boundary: &boundary, size, grain, count };
+            question.answer(root, source.as_ref(), head.gravity, &particles)
+        }
+        _ => None,
+    };
+    let (grid_origin, grid_size, cells) = grid?;
+    consistent?;
+    Some(Scenario {
+        name: name.to_owned(),
+        title: head.title?,
+        source_text,
+        seed: head.seed?,
+        gravity: head.gravity?,
+        engine: resolve_engine(engine, typical)?,
+        size: size?,
+        grid_origin,
+        grid_size,
+        cells,
+        boundary,
+        grain: particles.grain?,
+        restitution: restitution?,
+        count: count?,
+        initial: initial?,
+        source: source?,
+        run: run?,
+        record: record?,
+        units: units?,
+    })
+}
+
+fn count<V: Vector>(root: &Section<'_>, table: &ParticlesTable, size: Option<V>) -> Option<u32> {
+    let (amount, grain, size) = (table.amount?, table.grain?, size?);
+    match particles::count(amount, grain, size) {
+        Ok(count) => Some(count),
+        Err(message) => {
+            root.mistake(&format!("particles.{}", amount.key()), message);
+            None
+        }
+    }
+}
+
+fn volume_fraction<V: Vector>(count: Option<u32>, grain: Option<Grain>, size: Option<V>) -> Option<f64> {
+    Some(f64::from(count?) * grain?.volume::<V>() / size?.product())
+}
+
+struct GridQuestion<'a, V> {
+    engine: &'a EngineTable,
+    boundary: &'a Boundary<V>,
+    size: V,
+    grain: Grain,
+    count: u32,
+}
+
+impl<V: Vector> GridQuestion<'_, V> {
+    /// Origin, size and cells of the grid.
+    fn answer(
+        &self,
+        root: &Section<'_>,
+        source: Option<&Source<V>>,
+        gravity: Option<V>,
+        particles: &ParticlesTable,
+    ) -> Option<(V, V, [u32; 3])> {
+        let hsmc = self.engine.kind? == EngineKind::Hsmc;
+        let maximum = self.engine.hsmc.maximum_volume_fraction;
+        let (grid_origin, grid_size) = walls::swept_box(self.boundary, self.size);
+        let plan = CellPlan {
+            wish: self.engine.cell_size?,
+            grid_origin,
+            grid_size,
+            size: self.size,
+            periodic: std::array::from_fn(|axis| self.boundary.is_periodic(axis)),
+            grain: self.grain,
+            count: self.count,
+            final_count: u64::from(self.count) + source.map_or(0, |source| u64::from(source.count)),
+            maximum_volume_fraction: if hsmc { Some(maximum?) } else { None },
+            settling: source.is_some() || gravity? != V::ZERO,
+        };
+        match plan.cells() {
+            Ok(cells) => Some((grid_origin, grid_size, cells)),
+            Err(Refusal::CellSize(message)) => {
+                root.mistake("engine.cell_size", message);
+                None
+            }
+            Err(Refusal::Count(message)) => {
+                let key = particles.amount.map_or("count", particles::Amount::key);
+                root.mistake(&format!("particles.{key}"), message);
+                None
+            }
+        }
+    }
+}
+
+fn resolve_engine(engine: EngineTable, restitution: f64) -> Option<EngineChoice> {
+    let hsmc = engine.hsmc;
+    let cell_restitution = match hsmc.cell_restitution? {
+        CellRestitution::AsGrains => restitution,
+        CellRestitution::Number(number) => number,
+        CellRestitution::AtLeast(least) => restitution.max(least),
+    };
+    Some(EngineChoice {
+        kind: engine.kind?,
+        time_step: engine.time_step?,
+        enskog_factor: engine.enskog_factor?,
+        transfer: engine.transfer?,
+        hsmc: HsmcRules {
+            maximum_volume_fraction: hsmc.maximum_volume_fraction?,
+            cell_restitution,
+            sweeps: hsmc.sweeps?,
+            admission: hsmc.admission?,
+            displacement: hsmc.displacement?,
+        },
+    })
+}
+
+fn resolve_initial<V: Vector>(
+    root: &Section<'_>,
+    table: InitialTable,
+    story: &Story<'_, V>,
+) -> Option<Initial> {
+    let velocities = consistency::velocities(root, &table, story);
+    consistency::equilibration(root, &table, velocities, story)?;
+    let velocities = match table.positions {
+        Some(InitialPositions::Log(_)) => InitialVelocities::Rest,
+        _ => velocities?,
+    };
+    table.velocities?;
+    Some(Initial { positions: table.positions?, velocities, equilibrate: table.equilibrate? })
+}

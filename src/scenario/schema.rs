@@ -1,0 +1,78 @@
+//! Every key of a scenario file, table by table.
+
+/// The keys above the first table, and the tables.
+pub(super) const ROOT: &[&str] = &[
+    "title",
+    "dimension",
+    "seed",
+    "gravity",
+    "engine",
+    "domain",
+    "boundary",
+    "particles",
+    "initial",
+    "source",
+    "run",
+    "record",
+    "units",
+];
+/// `[engine]`.
+pub(super) const ENGINE: &[&str] = &["kind", "cell_size", "time_step", "enskog_factor", "transfer", "hsmc"];
+/// `engine.time_step`.
+pub(super) const TIME_STEP: &[&str] = &["fixed", "collisions_per_particle", "crossing"];
+/// `[engine.hsmc]`.
+pub(super) const HSMC: &[&str] =
+    &["maximum_volume_fraction", "cell_restitution", "sweeps", "admission", "displacement"];
+/// `[domain]`.
+pub(super) const DOMAIN: &[&str] = &["size"];
+/// `boundary.x` and the like, where it is a table.
+pub(super) const FACES: &[&str] = &["lower", "upper"];
+/// `[particles]`.
+pub(super) const PARTICLES: &[&str] = &["count", "volume_fraction", "diameter", "mass", "restitution"];
+/// `particles.restitution`, where it is a table.
+pub(super) const RESTITUTION: &[&str] = &["law", "r0", "v0"];
+/// `[initial]`.
+pub(super) const INITIAL: &[&str] = &["positions", "velocities", "equilibrate"];
+/// `[source]`.
+pub(super) const SOURCE: &[&str] = &["count", "rate", "position", "width", "height", "velocity"];
+/// `[run]`.
+pub(super) const RUN: &[&str] = &["time", "steps", "collisions_per_particle", "rest"];
+/// `[record]`.
+pub(super) const RECORD: &[&str] = &["frames", "every", "spacing", "measures", "points", "states", "from"];
+/// `[units]`.
+pub(super) const UNITS: &[&str] = &["length", "mass", "time"];
+
+/// The tables that a key put into the wrong one may belong to.
+pub(super) const TABLES: &[(&str, &[&str])] = &[
+    ("engine", ENGINE),
+    ("engine.time_step", TIME_STEP),
+    ("engine.hsmc", HSMC),
+    ("domain", DOMAIN),
+    ("particles", PARTICLES),
+    ("initial", INITIAL),
+    ("source", SOURCE),
+    ("run", RUN),
+    ("record", RECORD),
+];
+
+/// Names of the measures that `record.measures` accepts.
+pub const MEASURES: &[&str] = &[
+    "energy",
+    "velocity-profile",
+    "density-profile",
+    "wall-stress",
+    "density-contrast",
+    "spectrum",
+    "flow",
+    "heap",
+    "centre-of-mass",
+    "pressure",
+];
+
+/// Keys of which a scenario has one; setting one on the command line removes the others.
+pub(super) const EITHER_OR: &[(&str, &[&[&str]])] = &[
+    ("particles", &[&["count"], &["volume_fraction"]]),
+    ("record", &[&["frames", "spacing"], &["every"]]),
+    ("engine.time_step", &[&["fixed"], &["collisions_per_particle"], &["crossing"]]),
+    ("initial.velocities", &[&["maxwell"], &["uniform"]]),
+];

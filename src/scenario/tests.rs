@@ -1,0 +1,160 @@
+use glam::DVec2;
+
+use super::model::*;
+use super::*;
+use crate::law::boundary::{Face, WallKind};
+
+fn with(sets: &[&str]) -> Overrides {
+    Overrides { sets: sets.iter().map(ToString::to_string).collect(), ..Default::default() }
+}
+
+fn flat(name: &str, sets: &[&str]) -> Scenario<DVec2> {
+    match load(name, &with(sets)).unwrap_or_else(|error| panic!("{error}")) {
+        AnyScenario::Two(scenario) => scenario,
+        AnyScenario::Three(_) => panic!("{name} is flat"),
+    }
+}
+
+fn message(name: &str, sets: &[&str]) -> String {
+    load(name, &with(sets)).unwrap_err().to_string()
+}
+
+#[test]
+fn every_built_in_scenario_is_right_for_every_engine() {
+    for (name, title) in builtin::list() {
+        assert!(!title.is_empty());
+        for kind in EngineKind::ALL {
+            let overrides = Overrides { engine: Some(kind.name().to_owned()), ..Default::default() };
+            let scenario = load(name, &overrides).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(scenario.engine(), kind);
+        }
+    }
+}
+
+#[test]
+fn the_built_in_scenarios_have_their_numbers() {
+    assert_eq!(flat("shear", &[]).count, 2037);
+    assert_eq!(flat("pipe", &[]).count, 3870);
+    let cooling = flat("cooling", &[]);
+    assert!((cooling.volume_fraction() - 0.25).abs() < 1e-12);
+    assert!((flat("clustering", &[]).volume_fraction() - 0.25).abs() < 1e-12);
+    assert_eq!(flat("sedimentation", &[]).capacity(), Some(4));
+    assert_eq!(flat("heap", &[]).engine.hsmc.cell_restitution, 0.9);
+    assert_eq!(flat("heap", &["particles.restitution=0.97"]).engine.hsmc.cell_restitution, 0.97);
+    assert_eq!(flat("heap-full", &[]).source.unwrap().count, 30_500);
+}
+
+#[test]
+fn the_source_text_gives_the_same_scenario() {
+    let sets = [
+        "domain.size[0]=80",
+        "particles.count=77",
+        "record.every=2.5",
+        "title=a # b",
+        "boundary.y.upper=\"open\"",
+    ];
+    let overrides = Overrides { seed: Some(9), engine: Some("cba".to_owned()), ..with(&sets) };
+    let changed = load("shear", &overrides).unwrap();
+    assert!(changed.source_text().contains("# Bagnold shear flow"));
+    assert_eq!(parse("shear", changed.source_text(), &Overrides::default()).unwrap(), changed);
+    let AnyScenario::Two(changed) = changed else { panic!("flat") };
+    assert_eq!((changed.seed, changed.count, changed.size.x), (9, 77, 80.0));
+    assert_eq!((changed.title.as_str(), changed.record.spacing), ("a # b", Spacing::Every(2.5)));
+    assert_eq!(changed.boundary.faces(1).unwrap()[1], Face::Open);
+}
+
+#[test]
+fn without_options_the_text_stays_as_it_is() {
+    assert_eq!(Some(flat("pipe", &[]).source_text.as_str()), builtin::text("pipe"));
+}
+
+#[test]
+fn a_rough_wall_with_a_velocity_follows_the_shear_rule() {
+    let restitution = |scenario: &Scenario<DVec2>| {
+        scenario.boundary.walls().map(|(_, _, wall)| wall.restitution).collect::<Vec<_>>()
+    };
+    let shear = flat("shear", &["boundary.y.upper.restitution=0.5"]);
+    let covered = 1.0 - (1.0 - 0.9) * shear.volume_fraction();
+    assert_eq!(restitution(&shear), [covered, 0.5]);
+    assert_eq!(restitution(&flat("heap", &[])), [0.9]);
+}
+
+#[test]
+fn a_vibrating_wall_extends_the_grid() {
+    let lower = "boundary.y.lower={wall='vibrating',amplitude=2,frequency=0.5}";
+    let scenario = flat("shear", &[lower]);
+    assert_eq!((scenario.grid_origin, scenario.grid_size), (DVec2::new(0.0, -2.0), DVec2::new(400.0, 42.0)));
+    assert_eq!(scenario.cells, [160, 17, 1]);
+    assert!(matches!(scenario.boundary.walls().next().unwrap().2.kind, WallKind::Vibrating { .. }));
+}
+
+#[test]
+fn three_dimensions_are_read() {
+    let text = "dimension = 3\ngravity = [0, 0, -1]\n[engine]\nkind = 'hsmc'\n[domain]\nsize = [20, 20, 30]\n\
+                [boundary]\nz = { lower = { wall = 'rough' }, upper = 'open' }\n[particles]\ncount = 100\n\
+                restitution = 0.9\n[run]\ntime = 1\n";
+    let AnyScenario::Three(scenario) = parse("deep", text, &Overrides::default()).unwrap() else { panic!() };
+    assert_eq!(scenario.cells, [10, 10, 15]);
+    assert_eq!(scenario.capacity(), Some(9));
+    assert_eq!(scenario.initial.velocities, InitialVelocities::Rest);
+    assert_eq!(scenario.engine.hsmc.maximum_volume_fraction, 0.64);
+    assert_eq!(scenario.record.spacing, Spacing::Frames(200));
+}
+
+#[test]
+fn all_mistakes_come_at_once_with_their_places() {
+    let text = "dimension = 2\n[engine]\nkind = 'hsms'\n[domain]\nsize = [40, -1]\n[particles]\ncount = 1.5\n\
+                diamter = 2\nrestitution = 2\n[run]\n";
+    let error = parse("bad.toml", text, &with(&["seed=-3", "oops"])).unwrap_err();
+    let text = error.to_string();
+    for expected in [
+        "bad.toml:3: engine.kind: \"hsms\" is not known; did you mean `hsmc`?",
+        "bad.toml:5: domain.size[1]: -1 is out of bounds",
+        "bad.toml:7: particles.count: 1.5 must be a whole number",
+        "bad.toml:8: particles.diamter: is not a known key; did you mean `diameter`?",
+        "bad.toml:9: particles.restitution: 2 is out of bounds; give a number from 0 to 1",
+        "bad.toml:10: run: never ends",
+        "--set #1 'seed=-3': seed: -3 is out of bounds",
+        "--set #2 'oops': has no `=`",
+    ] {
+        assert!(text.contains(expected), "{expected} is missing from\n{text}");
+    }
+}
+
+#[test]
+fn options_are_named_in_their_mistakes() {
+    assert!(
+        message("shear", &["title='x'", "engine.knd=1"]).starts_with("--set #2 'engine.knd=1': engine.knd:")
+    );
+    assert!(
+        message("shear", &["domain.size[1]=0"])
+            .starts_with("--set #1 'domain.size[1]=0': domain.size[1]: 0 is")
+    );
+    let overrides = Overrides { engine: Some("cuba".to_owned()), seed: Some(u64::MAX), ..Default::default() };
+    let text = load("shear", &overrides).unwrap_err().to_string();
+    assert!(text.contains("--engine 'cuba': engine.kind: \"cuba\" is not known"), "{text}");
+    assert!(text.contains("choose one of \"dsmc\", \"cba\", \"hsmc\""), "{text}");
+    assert!(text.contains("--seed 18446744073709551615: is too large"), "{text}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused() {
+    for value in ["nan", "inf", "-inf", "1e300"] {
+        assert!(load("shear", &with(&[&format!("particles.diameter={value}")])).is_err(), "{value}");
+        assert!(load("shear", &with(&[&format!("run.time={value}")])).is_err(), "{value}");
+    }
+}
+
+#[test]
+fn scaling_the_units_changes_no_cell() {
+    let base = flat("shear", &[]);
+    let small = flat(
+        "shear",
+        &[
+            "particles.diameter=0.0009765625",
+            "domain.size=[0.390625, 0.0390625]",
+            "engine.cell_size=0.00244140625",
+        ],
+    );
+    assert_eq!((small.cells, small.count), (base.cells, base.count));
+}
