@@ -27,7 +27,7 @@ pub trait Vector:
     + IndexMut<usize>
 {
     /// Angular velocity: one number in 2D, three in 3D.
-    type Spin: Copy + Debug + Default + PartialEq + Send + Sync + 'static + AsRef<[f64]>;
+    type Spin: Copy + Debug + Default + PartialEq + Send + Sync + 'static + AsRef<[f64]> + AsMut<[f64]>;
     /// D, the number of axes.
     const DIMENSION: usize;
     /// The origin.

@@ -23,6 +23,8 @@ pub struct RunLog {
     pub frames: Vec<Frame>,
     /// The box and its walls.
     pub walls: Option<Walls>,
+    /// What is missing, as a sentence, where the file was cut off; nothing for a whole log.
+    pub cut_off: Option<String>,
 }
 
 /// Where the grains are at one time, at the precision of a picture.

@@ -1,0 +1,131 @@
+//! Reads a log: its contents for reports and comparisons, its saved states for resuming.
+
+use std::path::Path;
+
+use prost::Message;
+
+use super::contents::RunLog;
+use super::error::LogError;
+use super::frame::frame_of;
+use super::saved::Assembly;
+use super::scan::{Event, Fault, scan};
+use super::schema::foxglove::{PointCloud, SceneUpdate};
+use super::schema::grainflow::{Profile as ProfileMessage, State};
+use super::schema::measures::{MeasuresMessage, columns_of};
+use super::schema::topic;
+use super::schema::units::dimension_of;
+use super::state::SavedState;
+use super::walls::walls_of;
+use crate::observe::measure::{Column, Profile};
+use crate::space::Vector;
+
+/// Reads everything in the log at `path` but its saved states. A log that was cut off gives what is
+/// complete and says so in [`RunLog::cut_off`]; one with wrong bytes is refused.
+pub fn read_log(path: &Path) -> Result<RunLog, LogError> {
+    let mut contents = Contents::default();
+    let cut_off = scan(path, &mut |event| contents.add(event))?;
+    Ok(RunLog { cut_off, ..contents.log })
+}
+
+/// All complete saved states of the log at `path`, in the order of their times.
+pub fn read_states<V: Vector>(path: &Path) -> Result<Vec<SavedState<V>>, LogError> {
+    let mut states = Vec::new();
+    each_state(path, |state| states.push(state))?;
+    Ok(states)
+}
+
+/// The last complete saved state of the log at `path`, from which its run can go on.
+pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<V>>, LogError> {
+    let mut last = None;
+    each_state(path, |state| last = Some(state))?;
+    Ok(last)
+}
+
+fn each_state<V: Vector>(path: &Path, mut take: impl FnMut(SavedState<V>)) -> Result<(), LogError> {
+    let mut assembly = Assembly::<V>::default();
+    scan(path, &mut |event| {
+        if let Event::Message { topic: topic::STATE, data, .. } = event {
+            let part = State::decode(data).map_err(Fault::damage)?;
+            if part.dimension as usize != V::DIMENSION {
+                return Err(Fault::Dimension(part.dimension, V::DIMENSION));
+            }
+            if let Some(state) = assembly.add(&part).map_err(Fault::damage)? {
+                take(state);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The contents so far.
+#[derive(Default)]
+struct Contents {
+    log: RunLog,
+    /// Numbers of the fields of the columns.
+    numbers: Vec<u32>,
+    /// Grains in the gas at every recording.
+    grains: Vec<u64>,
+}
+
+impl Contents {
+    fn add(&mut self, event: Event<'_>) -> Result<(), Fault> {
+        match event {
+            Event::Metadata(metadata) => self.log.metadata = metadata,
+            Event::Scenario(scenario) => self.log.scenario = scenario,
+            Event::Channel { topic: topic::MEASURES, description, metadata } => {
+                let columns = columns_of(description, metadata)
+                    .ok_or_else(|| Fault::damage("the columns of the series have no proper units"))?;
+                (self.numbers, self.log.columns) = columns.into_iter().unzip();
+            }
+            Event::Message { topic, sequence, data } => match topic {
+                topic::MEASURES => self.measures(data)?,
+                topic::PARTICLES => self.frame(sequence, data)?,
+                topic::PROFILES => self.log.profiles.push(profile(data)?),
+                topic::WALLS => {
+                    self.log.walls = walls_of(&SceneUpdate::decode(data).map_err(Fault::damage)?);
+                }
+                _ => {}
+            },
+            Event::Channel { .. } => {}
+        }
+        Ok(())
+    }
+
+    fn measures(&mut self, data: &[u8]) -> Result<(), Fault> {
+        let message = MeasuresMessage::decode(data, &self.numbers).map_err(Fault::damage)?;
+        self.log.series.push(message.values);
+        self.log.state_hashes.push(message.state_hash);
+        self.grains.push(message.grains);
+        Ok(())
+    }
+
+    /// A frame belongs to the recording of the same place in the sequence.
+    fn frame(&mut self, sequence: u32, data: &[u8]) -> Result<(), Fault> {
+        let recording = sequence as usize;
+        let time = self.log.series.get(recording).and_then(|row| row.first());
+        let (Some(&time), Some(&grains)) = (time, self.grains.get(recording)) else {
+            return Err(Fault::damage("a frame lacks its recording"));
+        };
+        let cloud = PointCloud::decode(data).map_err(Fault::damage)?;
+        let mut frame =
+            frame_of(&cloud).ok_or_else(|| Fault::damage("a frame lacks a field or part of a point"))?;
+        frame.time = time;
+        frame.grains = grains;
+        self.log.frames.push(frame);
+        Ok(())
+    }
+}
+
+fn profile(data: &[u8]) -> Result<Profile, Fault> {
+    let message = ProfileMessage::decode(data).map_err(Fault::damage)?;
+    let mut profile =
+        Profile { name: message.name, time: message.time, columns: Vec::new(), values: Vec::new() };
+    for column in message.columns {
+        let unit = dimension_of(&column.unit)
+            .ok_or_else(|| Fault::Damage(format!("`{}` is no unit", column.unit)))?;
+        profile.columns.push(Column { name: column.name, unit });
+        profile.values.push(column.values);
+    }
+    Ok(profile)
+}

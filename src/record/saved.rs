@@ -1,0 +1,215 @@
+//! Saved states as messages: large ones in parts, every number bit for bit.
+
+use std::ops::Range;
+
+use super::schema::grainflow::{Engine, Memory, State, Totals as TotalsMessage};
+use super::state::SavedState;
+use crate::engine::EngineState;
+use crate::engine::report::{Counts, Totals};
+use crate::matter::columns::Columns;
+use crate::space::Vector;
+
+/// Grains in one part: about ten megabytes.
+const PART: usize = 1 << 18;
+
+/// The rows of each part of a state of `grains` grains; an empty gas has one part.
+pub(crate) fn parts(grains: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..grains.max(1)).step_by(PART).map(move |first| first..(first + PART).min(grains))
+}
+
+/// The part of `state` that holds `rows`.
+pub(crate) fn part<V: Vector>(state: &SavedState<V>, rows: Range<usize>) -> State {
+    let columns = &state.columns;
+    let mut message = State {
+        time: Some(state.time),
+        compensation: Some(state.compensation),
+        dimension: V::DIMENSION as u32,
+        grains: columns.len() as u64,
+        first_row: rows.start as u64,
+        positions: vector_bytes(&columns.positions[rows.clone()]),
+        velocities: vector_bytes(&columns.velocities[rows.clone()]),
+        ids: columns.ids[rows.clone()].iter().flat_map(|id| id.to_le_bytes()).collect(),
+        spins: columns.spins.as_ref().map(|spins| spin_bytes::<V>(&spins[rows.clone()])),
+        species: columns.species.as_ref().map(|species| species[rows.clone()].to_vec()),
+        ..Default::default()
+    };
+    if rows.start == 0 {
+        add_sums(&mut message, state);
+    }
+    message
+}
+
+/// Puts states together again, part by part.
+#[derive(Debug)]
+pub(crate) struct Assembly<V: Vector> {
+    /// The state so far and the grains that it will have.
+    unfinished: Option<(SavedState<V>, u64)>,
+}
+
+impl<V: Vector> Default for Assembly<V> {
+    fn default() -> Self {
+        Assembly { unfinished: None }
+    }
+}
+
+impl<V: Vector> Assembly<V> {
+    /// Takes one part; gives the state when it was the last one. What is wrong with it, otherwise.
+    pub(crate) fn add(&mut self, part: &State) -> Result<Option<SavedState<V>>, &'static str> {
+        if part.dimension as usize != V::DIMENSION {
+            return Err("a state has another dimension");
+        }
+        if part.first_row == 0 {
+            self.unfinished = Some((sums_of(part).ok_or("a state lacks a field")?, part.grains));
+        }
+        let (state, grains) = self.unfinished.as_mut().ok_or("a state lacks its first part")?;
+        if part.first_row != state.columns.len() as u64 || part.grains != *grains {
+            return Err("a state lacks a part");
+        }
+        append(&mut state.columns, part).ok_or("the columns of a state do not fit together")?;
+        if (state.columns.len() as u64) < *grains {
+            return Ok(None);
+        }
+        Ok(self.unfinished.take().map(|(state, _)| state))
+    }
+}
+
+fn add_sums<V: Vector>(message: &mut State, state: &SavedState<V>) {
+    message.next_id = state.next_id;
+    message.engine = Some(Engine {
+        step: state.engine.step,
+        largest_speed: Some(state.engine.largest_speed),
+        collision_rate: Some(state.engine.collision_rate),
+    });
+    message.totals = Some(totals_message(&state.totals));
+    message.last_poured = Some(state.last_poured);
+    message.recordings = state.recordings;
+    message.samples.clone_from(&state.samples);
+    let memory = |(name, values): &(String, Vec<f64>)| Memory { name: name.clone(), values: values.clone() };
+    message.memories = state.memories.iter().map(memory).collect();
+}
+
+/// The state that a first part holds, without its columns.
+fn sums_of<V: Vector>(part: &State) -> Option<SavedState<V>> {
+    let engine = part.engine.as_ref()?;
+    Some(SavedState {
+        time: part.time?,
+        compensation: part.compensation?,
+        columns: Columns {
+            spins: part.spins.is_some().then(Vec::new),
+            species: part.species.is_some().then(Vec::new),
+            ..Columns::default()
+        },
+        next_id: part.next_id,
+        engine: EngineState {
+            step: engine.step,
+            largest_speed: engine.largest_speed?,
+            collision_rate: engine.collision_rate?,
+        },
+        totals: totals_of(part.totals.as_ref()?)?,
+        last_poured: part.last_poured?,
+        recordings: part.recordings,
+        samples: part.samples.clone(),
+        memories: part.memories.iter().map(|memory| (memory.name.clone(), memory.values.clone())).collect(),
+    })
+}
+
+fn totals_message<V: Vector>(totals: &Totals<V>) -> TotalsMessage {
+    let counts = &totals.counts;
+    TotalsMessage {
+        steps: totals.steps,
+        steps_capped: totals.steps_capped,
+        poured: totals.poured,
+        collisions_per_particle: Some(totals.collisions_per_particle),
+        particle_steps: totals.particle_steps,
+        collisions: counts.collisions,
+        candidates: counts.candidates,
+        cell_collisions: counts.cell_collisions,
+        rejected_moves: counts.rejected_moves,
+        removed: counts.removed,
+        wall_momentum: counts.wall_momentum.iter().flatten().flat_map(|&vector| components(vector)).collect(),
+        carried_momentum: Some(counts.carried_momentum),
+    }
+}
+
+fn totals_of<V: Vector>(message: &TotalsMessage) -> Option<Totals<V>> {
+    if message.wall_momentum.len() != 6 * V::DIMENSION {
+        return None;
+    }
+    let mut wall_momentum = [[V::ZERO; 2]; 3];
+    let numbers = message.wall_momentum.chunks_exact(V::DIMENSION);
+    for (vector, numbers) in wall_momentum.iter_mut().flatten().zip(numbers) {
+        *vector = V::from_fn(|axis| numbers[axis]);
+    }
+    Some(Totals {
+        steps: message.steps,
+        steps_capped: message.steps_capped,
+        poured: message.poured,
+        collisions_per_particle: message.collisions_per_particle?,
+        particle_steps: message.particle_steps,
+        counts: Counts {
+            collisions: message.collisions,
+            candidates: message.candidates,
+            cell_collisions: message.cell_collisions,
+            rejected_moves: message.rejected_moves,
+            removed: message.removed,
+            wall_momentum,
+            carried_momentum: message.carried_momentum?,
+        },
+    })
+}
+
+/// Appends the rows of `part`; `None` where its columns have different lengths.
+fn append<V: Vector>(columns: &mut Columns<V>, part: &State) -> Option<()> {
+    columns.positions.extend(vectors_of::<V>(&part.positions)?);
+    columns.velocities.extend(vectors_of::<V>(&part.velocities)?);
+    columns.ids.extend(words::<4>(&part.ids)?.map(u32::from_le_bytes));
+    if let Some(spins) = &mut columns.spins {
+        spins.extend(spins_of::<V>(part.spins.as_ref()?)?);
+    }
+    if let Some(species) = &mut columns.species {
+        species.extend(part.species.as_ref()?);
+    }
+    let n = columns.len();
+    let whole = columns.positions.len() == n
+        && columns.velocities.len() == n
+        && columns.spins.as_ref().is_none_or(|spins| spins.len() == n)
+        && columns.species.as_ref().is_none_or(|species| species.len() == n)
+        && n as u64 <= part.grains;
+    whole.then_some(())
+}
+
+fn components<V: Vector>(vector: V) -> impl Iterator<Item = f64> {
+    (0..V::DIMENSION).map(move |axis| vector[axis])
+}
+
+fn vector_bytes<V: Vector>(vectors: &[V]) -> Vec<u8> {
+    vectors.iter().flat_map(|&vector| components(vector)).flat_map(f64::to_le_bytes).collect()
+}
+
+fn spin_bytes<V: Vector>(spins: &[V::Spin]) -> Vec<u8> {
+    spins.iter().flat_map(|spin| spin.as_ref()).flat_map(|component| component.to_le_bytes()).collect()
+}
+
+/// `bytes` as words of W bytes; `None` where some are left over.
+fn words<const W: usize>(bytes: &[u8]) -> Option<impl Iterator<Item = [u8; W]>> {
+    let (words, rest) = bytes.as_chunks::<W>();
+    rest.is_empty().then(|| words.iter().copied())
+}
+
+fn vectors_of<V: Vector>(bytes: &[u8]) -> Option<Vec<V>> {
+    let numbers: Vec<f64> = words::<8>(bytes)?.map(f64::from_le_bytes).collect();
+    let vectors = numbers.chunks_exact(V::DIMENSION);
+    vectors.remainder().is_empty().then(|| vectors.map(|numbers| V::from_fn(|axis| numbers[axis])).collect())
+}
+
+fn spins_of<V: Vector>(bytes: &[u8]) -> Option<Vec<V::Spin>> {
+    let numbers: Vec<f64> = words::<8>(bytes)?.map(f64::from_le_bytes).collect();
+    let width = V::Spin::default().as_ref().len();
+    let spins = numbers.chunks_exact(width);
+    let spin = |numbers: &[f64]| {
+        let mut spin = V::Spin::default();
+        spin.as_mut().copy_from_slice(numbers);
+        spin
+    };
+    spins.remainder().is_empty().then(|| spins.map(spin).collect())
+}

@@ -1,0 +1,238 @@
+//! Goes through the file of a log from start to end, checking every checksum on the way.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use mcap::records::Record;
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::{MAGIC, McapError};
+
+use super::error::LogError;
+use super::schema;
+
+/// Bytes read at a time.
+const BLOCK: usize = 1 << 18;
+/// A record may always be this long; a longer one has to be plausible for the length of the file.
+const USUAL_LIMIT: u64 = 1 << 28;
+
+/// Something that stands in a log.
+pub(crate) enum Event<'a> {
+    /// What is known about the run.
+    Metadata(BTreeMap<String, String>),
+    /// The scenario as TOML text.
+    Scenario(String),
+    /// A channel, its description and its own metadata.
+    Channel { topic: &'a str, description: &'a [u8], metadata: &'a BTreeMap<String, String> },
+    /// A message.
+    Message { topic: &'a str, sequence: u32, data: &'a [u8] },
+}
+
+/// Gives every event of the log at `path` to `visit`, which says what is wrong with it, if anything. A
+/// sentence about what is missing, where the file was cut off.
+pub(crate) fn scan(
+    path: &Path,
+    visit: &mut dyn FnMut(Event<'_>) -> Result<(), Fault>,
+) -> Result<Option<String>, LogError> {
+    let unreadable = |source| LogError::Read { path: path.to_owned(), source };
+    let mut file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    check_magic(path, &mut file, length)?;
+    let mut reader = LinearReader::new_with_options(options(length));
+    let mut state = Progress::default();
+    let mut position = 0;
+    while let Some(event) = reader.next_event() {
+        let done = match event {
+            Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                let block = reader.insert(wanted.clamp(1, BLOCK));
+                let read = file.read(block).map_err(unreadable)?;
+                reader.notify_read(read);
+                position += read as u64;
+                Ok(())
+            }
+            Ok(LinearReadEvent::Record { opcode, data }) => state.record(opcode, data, visit),
+            Err(error) => Err(Fault::from(error)),
+        };
+        match done {
+            Ok(()) => {}
+            Err(Fault::End) => break,
+            Err(fault) => return Err(fault.at(path, position)),
+        }
+    }
+    state.verdict(path, length)
+}
+
+/// Why a scan stops.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// The file ends too early.
+    End,
+    /// There is no header.
+    NoHeader,
+    /// The format is newer: its number and the version that wrote it.
+    Newer(String, String),
+    /// States of another dimension: what they have, what was wanted.
+    Dimension(u32, usize),
+    /// Anything else.
+    Damage(String),
+}
+
+impl Fault {
+    pub(crate) fn damage(reason: impl ToString) -> Self {
+        Fault::Damage(reason.to_string())
+    }
+
+    fn at(self, path: &Path, position: u64) -> LogError {
+        let path = path.to_owned();
+        match self {
+            Fault::End | Fault::NoHeader => LogError::NoHeader { path },
+            Fault::Newer(found, writer) => LogError::Newer { path, found, writer },
+            Fault::Dimension(found, wanted) => LogError::Dimension { path, found, wanted },
+            Fault::Damage(reason) => LogError::Damaged { path, position, reason },
+        }
+    }
+}
+
+impl From<McapError> for Fault {
+    fn from(error: McapError) -> Self {
+        match error {
+            McapError::UnexpectedEof => Fault::End,
+            other => Fault::damage(other),
+        }
+    }
+}
+
+fn check_magic(path: &Path, file: &mut File, length: u64) -> Result<(), LogError> {
+    let unreadable = |source| LogError::Read { path: path.to_owned(), source };
+    if length == 0 {
+        return Err(LogError::Empty { path: path.to_owned() });
+    }
+    let mut start = Vec::new();
+    file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut start).map_err(unreadable)?;
+    if start != MAGIC {
+        return Err(LogError::NotMcap { path: path.to_owned() });
+    }
+    file.rewind().map_err(unreadable)
+}
+
+/// Every checksum is checked, and those of a chunk before anything in it is believed.
+fn options(file_length: u64) -> LinearReaderOptions {
+    let limit = file_length.saturating_mul(8).max(USUAL_LIMIT);
+    LinearReaderOptions::default()
+        .with_validate_chunk_crcs(true)
+        .with_prevalidate_chunk_crcs(true)
+        .with_validate_data_section_crc(true)
+        .with_validate_summary_section_crc(true)
+        .with_check_finishes_after_end_magic(true)
+        .with_record_length_limit(usize::try_from(limit).unwrap_or(usize::MAX))
+}
+
+/// What has been seen so far.
+#[derive(Default)]
+struct Progress {
+    /// Whether the header of a log was there.
+    header: bool,
+    /// Whether the recorded part ended as it should.
+    data_ended: bool,
+    /// Whether the whole file ended as it should.
+    ended: bool,
+    /// Descriptions by number.
+    schemas: BTreeMap<u16, Vec<u8>>,
+    /// Topics by number of the channel.
+    topics: BTreeMap<u16, String>,
+}
+
+impl Progress {
+    fn record(
+        &mut self,
+        opcode: u8,
+        data: &[u8],
+        visit: &mut dyn FnMut(Event<'_>) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        if opcode == mcap::records::op::ATTACHMENT && !holds_attachment(data) {
+            return Err(Fault::damage("an attachment is too short"));
+        }
+        match mcap::parse_record(opcode, data).map_err(Fault::damage)? {
+            Record::Metadata(record) if record.name == schema::METADATA => {
+                check_format(&record.metadata)?;
+                self.header = true;
+                visit(Event::Metadata(record.metadata))
+            }
+            Record::Attachment { header, data, .. } if header.name == schema::SCENARIO => {
+                let text = String::from_utf8(data.into_owned()).map_err(Fault::damage)?;
+                visit(Event::Scenario(text))
+            }
+            Record::Schema { header, data } => {
+                self.schemas.insert(header.id, data.into_owned());
+                Ok(())
+            }
+            Record::Channel(channel) if !self.data_ended => {
+                let description = self.schemas.get(&channel.schema_id);
+                let description = description.ok_or_else(|| Fault::damage("a channel lacks its schema"))?;
+                let (topic, metadata) = (channel.topic.as_str(), &channel.metadata);
+                visit(Event::Channel { topic, description, metadata })?;
+                self.topics.insert(channel.id, channel.topic);
+                Ok(())
+            }
+            Record::Message { header, data } => {
+                if !self.header {
+                    return Err(Fault::NoHeader);
+                }
+                let topic = self.topics.get(&header.channel_id);
+                let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
+                visit(Event::Message { topic, sequence: header.sequence, data: &data })
+            }
+            Record::DataEnd(_) => {
+                self.data_ended = true;
+                Ok(())
+            }
+            Record::Footer(_) => {
+                self.ended = true;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn verdict(&self, path: &Path, length: u64) -> Result<Option<String>, LogError> {
+        if !self.header {
+            return Err(Fault::NoHeader.at(path, length));
+        }
+        match (self.data_ended, self.ended) {
+            (true, true) => Ok(None),
+            (false, true) => Err(Fault::damage("its recorded part has no end").at(path, length)),
+            (true, false) => Ok(Some(format!(
+                "the log {} is cut off after {length} bytes, in its index; all that was recorded is there",
+                path.display()
+            ))),
+            (false, false) => Ok(Some(format!(
+                "the log {} is cut off after {length} bytes; what was complete before is there",
+                path.display()
+            ))),
+        }
+    }
+}
+
+fn check_format(metadata: &BTreeMap<String, String>) -> Result<(), Fault> {
+    let text = metadata.get(schema::FORMAT_KEY).ok_or_else(|| Fault::damage("it names no format"))?;
+    match text.parse::<u32>() {
+        Ok(format) if format <= schema::FORMAT => Ok(()),
+        _ => {
+            let writer = metadata.get("version").map_or("of unknown version", String::as_str);
+            Err(Fault::Newer(text.clone(), writer.to_owned()))
+        }
+    }
+}
+
+/// Whether `body` is long enough for the attachment that it says it is: times, two strings, data
+/// and checksum.
+fn holds_attachment(body: &[u8]) -> bool {
+    let string_end = |start: usize| {
+        let word = body.get(start..start.checked_add(4)?)?;
+        let length = u32::from_le_bytes(word.try_into().ok()?);
+        (start + 4).checked_add(length as usize)
+    };
+    let header_end = string_end(16).and_then(string_end);
+    header_end.and_then(|end| end.checked_add(12)).is_some_and(|least| least <= body.len())
+}

@@ -1,0 +1,122 @@
+//! The messages of this program's own: profiles and states.
+//!
+//! Fields may be added with new numbers; none is ever given another number or meaning.
+
+use super::message;
+
+message! {
+    /// A column of a profile.
+    "grainflow" "grainflow/ProfileColumn.proto" ProfileColumn {
+        /// Name, in snake case.
+        name: String = 1 [string],
+        /// Unit, such as `mass length^2 time^-2`; `1` for a pure number.
+        unit: String = 2 [string],
+        /// `[row]`.
+        values: Vec<f64> = 3 [double, repeated],
+    }
+}
+
+message! {
+    /// A table at one time.
+    "grainflow" "grainflow/Profile.proto" Profile {
+        /// When it was taken, or when its average ended [time].
+        time: f64 = 1 [double],
+        /// The measure's name.
+        name: String = 2 [string],
+        /// The abscissa, then what depends on it.
+        columns: Vec<ProfileColumn> = 3 [message, repeated] ".grainflow.ProfileColumn",
+    }
+}
+
+message! {
+    /// What the next step reads beside the grains.
+    "grainflow" "grainflow/Engine.proto" Engine {
+        /// Steps made.
+        step: u64 = 1 [uint64],
+        /// Largest speed after the last step [length/time], or −1.
+        largest_speed: Option<f64> = 2 [double, optional],
+        /// Collisions per time that the next step expects [1/time], or −1.
+        collision_rate: Option<f64> = 3 [double, optional],
+    }
+}
+
+message! {
+    /// Sums since the start of the run.
+    "grainflow" "grainflow/Totals.proto" Totals {
+        /// Steps made.
+        steps: u64 = 1 [uint64],
+        /// Steps that the cap shortened.
+        steps_capped: u64 = 2 [uint64],
+        /// Grains poured.
+        poured: u64 = 3 [uint64],
+        /// Σ 2ΔC/N.
+        collisions_per_particle: Option<f64> = 4 [double, optional],
+        /// Σ N over steps.
+        particle_steps: u64 = 5 [uint64],
+        /// Collisions of pairs of grains.
+        collisions: u64 = 6 [uint64],
+        /// Candidate pairs that were looked at.
+        candidates: u64 = 7 [uint64],
+        /// Collisions of pairs of cells.
+        cell_collisions: u64 = 8 [uint64],
+        /// Moves that were rejected for lack of room.
+        rejected_moves: u64 = 9 [uint64],
+        /// Grains that left through an open side.
+        removed: u64 = 10 [uint64],
+        /// Momentum given to the walls, `[axis][side][component]` with 3 axes [mass·length/time].
+        wall_momentum: Vec<f64> = 11 [double, repeated],
+        /// Σ p·s [mass·length²/time].
+        carried_momentum: Option<f64> = 12 [double, optional],
+    }
+}
+
+message! {
+    /// What a measure remembers.
+    "grainflow" "grainflow/Memory.proto" Memory {
+        /// The measure's name.
+        name: String = 1 [string],
+        /// Its memory.
+        values: Vec<f64> = 2 [double, repeated],
+    }
+}
+
+message! {
+    /// A saved state, or one part of it: rows `first_row` … of `grains`. The first part holds
+    /// everything that is not a column.
+    "grainflow" "grainflow/State.proto" State {
+        /// Simulated time [time].
+        time: Option<f64> = 1 [double, optional],
+        /// Rounding held back by the clock [time].
+        compensation: Option<f64> = 2 [double, optional],
+        /// D, 2 or 3.
+        dimension: u32 = 3 [uint32],
+        /// Grains in the whole state.
+        grains: u64 = 4 [uint64],
+        /// The row that this part starts with.
+        first_row: u64 = 5 [uint64],
+        /// Positions `[grain][axis]` as float64, little-endian [length].
+        positions: Vec<u8> = 6 [bytes = "vec"],
+        /// Velocities `[grain][axis]` as float64, little-endian [length/time].
+        velocities: Vec<u8> = 7 [bytes = "vec"],
+        /// Identities `[grain]` as uint32, little-endian.
+        ids: Vec<u8> = 8 [bytes = "vec"],
+        /// Angular velocities `[grain][component]` as float64, little-endian [1/time].
+        spins: Option<Vec<u8>> = 9 [bytes = "vec", optional],
+        /// Species `[grain]` as uint8.
+        species: Option<Vec<u8>> = 10 [bytes = "vec", optional],
+        /// The next identity to be given.
+        next_id: u32 = 11 [uint32],
+        /// What the engine remembers.
+        engine: Option<Engine> = 12 [message, optional] ".grainflow.Engine",
+        /// Sums since the start of the run.
+        totals: Option<Totals> = 13 [message, optional] ".grainflow.Totals",
+        /// When the last grain was poured [time]; −1 before.
+        last_poured: Option<f64> = 14 [double, optional],
+        /// Recordings made.
+        recordings: u64 = 15 [uint64],
+        /// Samples taken, by measure.
+        samples: Vec<u64> = 16 [uint64, repeated],
+        /// Memories of the measures.
+        memories: Vec<Memory> = 17 [message, repeated] ".grainflow.Memory",
+    }
+}
