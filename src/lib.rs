@@ -1,4 +1,20 @@
-//! Granular matter, simulated fast and honestly.
+//! # grainflow
+//!
+//! Granular matter, simulated fast enough for millions of grains and honestly enough to be trusted.
+//!
+//! Grains live in a box that is cut into cells and stand in memory in the order of their cells. A
+//! stochastic step lets grains of one cell collide at random, at the rate and with the impact
+//! parameters that kinetic theory gives, and then moves them all:
+//!
+//! * **DSMC**: pairs of point grains collide at the rate of the Boltzmann equation;
+//! * **CBA**: at the rate of Enskog theory, and each collision displaces its partners by a
+//!   diameter, so that the pressure of a dense gas comes out;
+//! * **HSMC**: cells fill up: nobody enters a full cell, and full cells pass momentum on to their
+//!   neighbours like grains, so that matter can come to rest and carry load.
+//!
+//! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
+//! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
+//! ([`scenario`], [`simulation`], [`run`], [`report`]) and the command line ([`cli`]).
 
 pub mod random;
 pub mod space;
@@ -14,4 +30,9 @@ pub mod observe;
 pub mod record;
 
 pub mod report;
+pub mod run;
 pub mod scenario;
+pub mod simulation;
+pub mod stopwatch;
+
+pub mod cli;

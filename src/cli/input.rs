@@ -29,8 +29,7 @@ pub(super) struct ScenarioInput {
 impl ScenarioInput {
     /// The checked scenario.
     pub(super) fn load(&self) -> Result<AnyScenario, ScenarioError> {
-        let overrides =
-            Overrides { sets: self.sets.clone(), engine: self.engine.clone(), seed: self.seed };
+        let overrides = Overrides { sets: self.sets.clone(), engine: self.engine.clone(), seed: self.seed };
         load(&self.scenario, &overrides)
     }
 }

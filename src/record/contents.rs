@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::law::boundary::{Boundary, Face};
 use crate::observe::measure::{Column, Profile};
+use crate::space::Vector;
 
 /// The contents of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,4 +53,23 @@ pub struct Walls {
     pub upper: [f64; 3],
     /// `[axis][side]`: `wall`, `open`, `periodic` or, for an axis that does not exist, empty.
     pub sides: [[String; 2]; 3],
+}
+
+impl Walls {
+    /// The box of `boundary` with corners at `lower` and `upper` [length].
+    pub fn new<V: Vector>(boundary: &Boundary<V>, lower: V, upper: V) -> Self {
+        let mut walls = Walls::default();
+        for axis in 0..V::DIMENSION {
+            walls.lower[axis] = lower[axis];
+            walls.upper[axis] = upper[axis];
+            walls.sides[axis] = match boundary.faces(axis) {
+                None => ["periodic".to_owned(), "periodic".to_owned()],
+                Some(faces) => faces.map(|face| match face {
+                    Face::Open => "open".to_owned(),
+                    Face::Wall(_) => "wall".to_owned(),
+                }),
+            };
+        }
+        walls
+    }
 }

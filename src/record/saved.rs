@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use super::schema::grainflow::{Engine, Memory, State, Totals as TotalsMessage};
-use super::state::SavedState;
+use super::schema::grainflow::{
+    Beginning as BeginningMessage, Engine, Memory, State, Totals as TotalsMessage,
+};
+use super::state::{Beginning, SavedState};
 use crate::engine::EngineState;
 use crate::engine::report::{Counts, Totals};
 use crate::matter::columns::Columns;
@@ -83,6 +85,13 @@ fn add_sums<V: Vector>(message: &mut State, state: &SavedState<V>) {
     message.totals = Some(totals_message(&state.totals));
     message.last_poured = Some(state.last_poured);
     message.recordings = state.recordings;
+    message.states = state.states;
+    message.beginning = Some(BeginningMessage {
+        particles: state.beginning.particles,
+        kinetic_energy: Some(state.beginning.kinetic_energy),
+        momentum: components(state.beginning.momentum).collect(),
+        momentum_scale: Some(state.beginning.momentum_scale),
+    });
     message.samples.clone_from(&state.samples);
     let memory = |(name, values): &(String, Vec<f64>)| Memory { name: name.clone(), values: values.clone() };
     message.memories = state.memories.iter().map(memory).collect();
@@ -108,8 +117,22 @@ fn sums_of<V: Vector>(part: &State) -> Option<SavedState<V>> {
         totals: totals_of(part.totals.as_ref()?)?,
         last_poured: part.last_poured?,
         recordings: part.recordings,
+        states: part.states,
+        beginning: beginning_of(part.beginning.as_ref()?)?,
         samples: part.samples.clone(),
         memories: part.memories.iter().map(|memory| (memory.name.clone(), memory.values.clone())).collect(),
+    })
+}
+
+fn beginning_of<V: Vector>(message: &BeginningMessage) -> Option<Beginning<V>> {
+    if message.momentum.len() != V::DIMENSION {
+        return None;
+    }
+    Some(Beginning {
+        particles: message.particles,
+        kinetic_energy: message.kinetic_energy?,
+        momentum: V::from_fn(|axis| message.momentum[axis]),
+        momentum_scale: message.momentum_scale?,
     })
 }
 

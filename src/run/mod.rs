@@ -135,9 +135,9 @@ fn run_in<V: Vector>(
             return Err(RunError::Simulation { source, log });
         }
     };
-    let (profiles, figures) = recorder.finish(&mut simulation)?;
-    let summary = summary::summary(&simulation, ending, &watch, figures);
-    series::write_tables(folder.path(), scenario, &recorder, &profiles)?;
+    let recorded = recorder.finish(&mut simulation)?;
+    let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
+    series::write_tables(folder.path(), scenario, &recorded)?;
     write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
     write_text(&folder.path().join("report.html"), &report::render(&read_log(&log)?, &summary))?;
     let folder = folder.settle()?;
@@ -184,9 +184,7 @@ fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
 }
 
 /// The gas that the scenario begins with, read from a log if it says so.
-fn initial_gas<V: Vector>(
-    scenario: &Scenario<V>,
-) -> Result<crate::matter::gas::Gas<V>, RunError> {
+fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::Gas<V>, RunError> {
     let saved = match &scenario.initial.positions {
         InitialPositions::Log(path) => {
             let state = last_state::<V>(path).map_err(RunError::InitialLog)?;

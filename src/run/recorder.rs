@@ -6,11 +6,11 @@ use std::path::Path;
 use super::NUMERICS;
 use crate::matter::state_hash::state_hash;
 use crate::observe::measure::{Column, Dimension, Figure, Profile};
+use crate::record::contents::Walls;
 use crate::record::error::LogError;
 use crate::record::frame::frame;
 use crate::record::time_scale::time_scale;
 use crate::record::writer::{LogHeader, LogWriter, Recording};
-use crate::scenario::geometry::walls;
 use crate::scenario::model::{RecordPlan, Scenario, Spacing};
 use crate::simulation::Simulation;
 use crate::simulation::schedule::Spread;
@@ -24,23 +24,35 @@ pub(super) struct Recorder {
     recordings: u64,
     states_saved: u64,
     last_recorded_step: Option<u64>,
-    /// Columns of the series; the first is the time.
-    pub(super) columns: Vec<Column>,
-    /// `[recording][column]`.
-    pub(super) series: Vec<Vec<f64>>,
-    /// Profiles taken at recordings.
-    pub(super) profiles: Vec<Profile>,
+    recorded: Recorded,
     /// `[measure]`: whether its series and profiles are stored.
     stored: Vec<bool>,
 }
 
+/// What was recorded, for the tables.
+#[derive(Debug, Default)]
+pub(super) struct Recorded {
+    /// Columns of the series; the first is the time.
+    pub(super) columns: Vec<Column>,
+    /// `[recording][column]`.
+    pub(super) series: Vec<Vec<f64>>,
+    /// Profiles taken at recordings, then those of the whole run.
+    pub(super) profiles: Vec<Profile>,
+    /// Figures of the whole run.
+    pub(super) figures: Vec<Figure>,
+}
+
 impl Recorder {
     /// Begins the log of a run that is about to start.
-    pub(super) fn create<V: Vector>(path: &Path, simulation: &mut Simulation<'_, V>) -> Result<Self, LogError> {
+    pub(super) fn create<V: Vector>(
+        path: &Path,
+        simulation: &mut Simulation<'_, V>,
+    ) -> Result<Self, LogError> {
         let scenario = simulation.scenario();
         let plan = &scenario.record;
         let (measures, _) = simulation.observation();
-        let is_stored = |name: &str| plan.measures.as_ref().is_none_or(|names| names.iter().any(|n| n == name));
+        let is_stored =
+            |name: &str| plan.measures.as_ref().is_none_or(|names| names.iter().any(|n| n == name));
         let stored: Vec<bool> = measures.iter().map(|measure| is_stored(measure.name())).collect();
         let mut columns =
             vec![Column { name: "time".to_owned(), unit: Dimension { time: 1, ..Dimension::default() } }];
@@ -51,7 +63,7 @@ impl Recorder {
             metadata: metadata(scenario),
             scenario: scenario.source_text.clone(),
             columns: columns.clone(),
-            walls: Some(walls(scenario)),
+            walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
             start: 0.0,
             time_scale: expected_time_scale(scenario),
         };
@@ -62,55 +74,53 @@ impl Recorder {
             recordings: 0,
             states_saved: 0,
             last_recorded_step: None,
-            columns,
-            series: Vec::new(),
-            profiles: Vec::new(),
+            recorded: Recorded { columns, ..Recorded::default() },
             stored,
         })
     }
 
     /// Makes the recording and saves the state that are due, if any.
-    pub(super) fn record_if_due<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
+    pub(super) fn record_if_due<V: Vector>(
+        &mut self,
+        simulation: &mut Simulation<'_, V>,
+    ) -> Result<(), LogError> {
         let (time, progress) = (simulation.gas().time(), simulation.progress());
         if self.frames.is_due(self.recordings, time, progress) {
             self.record(simulation)?;
             self.recordings = self.frames.next(time, progress).max(self.recordings + 1);
         }
         if self.states.is_due(self.states_saved, time, progress) {
-            self.writer.state(&simulation.saved_state(self.recordings))?;
+            self.writer.state(&simulation.saved_state(self.recordings, self.states_saved))?;
             self.states_saved = self.states.next(time, progress);
         }
         Ok(())
     }
 
-    /// Records the end, the profiles of the whole run and the last state; returns all profiles and figures.
+    /// Records the end, the profiles of the whole run and the last state, and ends the log.
     pub(super) fn finish<V: Vector>(
-        &mut self,
+        mut self,
         simulation: &mut Simulation<'_, V>,
-    ) -> Result<(Vec<Profile>, Vec<Figure>), LogError> {
+    ) -> Result<Recorded, LogError> {
         if self.last_recorded_step != Some(simulation.totals().steps) {
             self.record(simulation)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
-        let mut figures = Vec::new();
-        let mut profiles = Vec::new();
         let (measures, snapshot) = simulation.observation();
         for (measure, &stored) in measures.iter().zip(&self.stored) {
-            let (concluded, of_measure) = measure.conclusion(&snapshot, from);
-            figures.extend(of_measure);
-            profiles.extend(concluded.into_iter().filter(|_| stored));
+            let (profiles, figures) = measure.conclusion(&snapshot, from);
+            self.recorded.figures.extend(figures);
+            for profile in profiles.into_iter().filter(|_| stored) {
+                self.writer.profile(&profile)?;
+                self.recorded.profiles.push(profile);
+            }
         }
-        for profile in &profiles {
-            self.writer.profile(profile)?;
-        }
-        self.writer.state(&simulation.saved_state(self.recordings))?;
+        self.writer.state(&simulation.saved_state(self.recordings, self.states_saved))?;
         self.writer.finish()?;
-        self.profiles.extend(profiles.iter().cloned());
-        Ok((std::mem::take(&mut self.profiles), figures))
+        Ok(self.recorded)
     }
 
     /// Ends the log of a run that cannot go on; what was recorded stays readable.
-    pub(super) fn finish_after_failure(&mut self) -> Result<(), LogError> {
+    pub(super) fn finish_after_failure(self) -> Result<(), LogError> {
         self.writer.finish()
     }
 
@@ -132,8 +142,8 @@ impl Recorder {
             profiles: &profiles,
             frame: &frame,
         })?;
-        self.series.push(values);
-        self.profiles.extend(profiles);
+        self.recorded.series.push(values);
+        self.recorded.profiles.extend(profiles);
         self.last_recorded_step = Some(step);
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::recorder::Recorder;
+use super::recorder::Recorded;
 use super::{RunError, write_text};
 use crate::observe::measure::{Column, Dimension, Profile};
 use crate::scenario::model::{Scenario, Units};
@@ -13,12 +13,11 @@ use crate::space::Vector;
 pub(super) fn write_tables<V: Vector>(
     folder: &Path,
     scenario: &Scenario<V>,
-    recorder: &Recorder,
-    profiles: &[Profile],
+    recorded: &Recorded,
 ) -> Result<(), RunError> {
-    let rows = recorder.series.iter().map(Vec::as_slice);
-    write_text(&folder.join("series.csv"), &table(&recorder.columns, &scenario.units, rows))?;
-    let mut names: Vec<&str> = profiles.iter().map(|profile| profile.name.as_str()).collect();
+    let rows = recorded.series.iter().map(Vec::as_slice);
+    write_text(&folder.join("series.csv"), &table(&recorded.columns, &scenario.units, rows))?;
+    let mut names: Vec<&str> = recorded.profiles.iter().map(|profile| profile.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     if names.is_empty() {
@@ -27,7 +26,7 @@ pub(super) fn write_tables<V: Vector>(
     let place = folder.join("profiles");
     std::fs::create_dir_all(&place).map_err(|source| RunError::Write { path: place.clone(), source })?;
     for name in names {
-        let same: Vec<&Profile> = profiles.iter().filter(|profile| profile.name == name).collect();
+        let same: Vec<&Profile> = recorded.profiles.iter().filter(|profile| profile.name == name).collect();
         write_text(&place.join(format!("{name}.csv")), &profile_table(&same, &scenario.units))?;
     }
     Ok(())
@@ -85,7 +84,13 @@ fn unit_name(dimension: Dimension, units: &Units) -> String {
         factors.join("·")
     };
     match (side(1), side(-1)) {
-        (above, below) if below.is_empty() => if above.is_empty() { "1".to_owned() } else { above },
+        (above, below) if below.is_empty() => {
+            if above.is_empty() {
+                "1".to_owned()
+            } else {
+                above
+            }
+        }
         (above, below) if above.is_empty() => format!("1/{below}"),
         (above, below) => format!("{above}/{below}"),
     }
@@ -107,7 +112,10 @@ mod tests {
     #[test]
     fn what_is_not_defined_stays_empty() {
         let units = Units { length: "d".into(), mass: "m".into(), time: "t".into() };
-        let columns = [Column { name: "a".into(), unit: Dimension::default() }, Column { name: "b".into(), unit: Dimension::default() }];
+        let columns = [
+            Column { name: "a".into(), unit: Dimension::default() },
+            Column { name: "b".into(), unit: Dimension::default() },
+        ];
         let text = table(&columns, &units, [[0.1, f64::NAN].as_slice()].into_iter());
         assert_eq!(text, "a [1],b [1]\n0.1,\n");
     }

@@ -26,7 +26,7 @@ pub(super) fn summary<V: Vector>(
     simulation: &Simulation<'_, V>,
     ending: Ending,
     watch: &Stopwatch,
-    figures: Vec<Figure>,
+    figures: &[Figure],
 ) -> Map<String, Value> {
     let mut summary = what_ran(simulation);
     summary.append(&mut what_happened(simulation, ending));
@@ -34,7 +34,7 @@ pub(super) fn summary<V: Vector>(
     summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
     for figure in figures {
         let error = format!("{}_standard_error", figure.name);
-        summary.insert(figure.name, json!(figure.value.filter(|value| value.is_finite())));
+        summary.insert(figure.name.clone(), json!(figure.value.filter(|value| value.is_finite())));
         summary.insert(error, json!(figure.standard_error.filter(|value| value.is_finite())));
     }
     summary
@@ -89,8 +89,12 @@ fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> M
 }
 
 fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) -> Map<String, Value> {
-    let advancing: f64 =
-        watch.laps().iter().filter(|(verb, _)| !NOT_ADVANCING.contains(verb)).map(|(_, seconds)| seconds).sum();
+    let advancing: f64 = watch
+        .laps()
+        .iter()
+        .filter(|(verb, _)| !NOT_ADVANCING.contains(verb))
+        .map(|(_, seconds)| seconds)
+        .sum();
     let rate = simulation.totals().particle_steps as f64 / advancing;
     object(json!({
         "wall_seconds": watch.seconds(),

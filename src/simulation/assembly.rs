@@ -5,16 +5,9 @@ use crate::engine::stochastic::Stochastic;
 use crate::engine::stochastic::laws::{DenseGas, Laws};
 use crate::law::boundary::Boundary;
 use crate::law::restitution::{Constant, Restitution, RestitutionLaw};
-use crate::matter::grid::Grid;
 use crate::random::Streams;
 use crate::scenario::model::{EngineKind, HsmcRules, Scenario};
 use crate::space::Vector;
-
-/// The scenario's box and cells.
-pub fn grid<V: Vector>(scenario: &Scenario<V>) -> Grid<V> {
-    let periodic: Vec<bool> = (0..V::DIMENSION).map(|axis| scenario.boundary.is_periodic(axis)).collect();
-    Grid::new(scenario.grid_origin, scenario.grid_size, &scenario.cells, &periodic)
-}
 
 /// The scenario's engine, under the given seed, boundary and gravity; `restitution` overrides
 /// that of grains and cells.
@@ -28,7 +21,9 @@ pub fn engine<V: Vector>(
     let law = restitution.map_or(scenario.restitution, |r| RestitutionLaw::Constant(Constant(r)));
     match law {
         RestitutionLaw::Constant(law) => with_law(scenario, seed, boundary, gravity, law, restitution),
-        RestitutionLaw::VelocityDependent(law) => with_law(scenario, seed, boundary, gravity, law, restitution),
+        RestitutionLaw::VelocityDependent(law) => {
+            with_law(scenario, seed, boundary, gravity, law, restitution)
+        }
     }
 }
 

@@ -66,7 +66,11 @@ impl Limits {
             Some(EndReason::Time)
         } else if self.run.steps.is_some_and(|limit| totals.steps >= limit) {
             Some(EndReason::Steps)
-        } else if self.run.collisions_per_particle.is_some_and(|limit| totals.collisions_per_particle >= limit) {
+        } else if self
+            .run
+            .collisions_per_particle
+            .is_some_and(|limit| totals.collisions_per_particle >= limit)
+        {
             Some(EndReason::CollisionsPerParticle)
         } else if self.run.rest.is_some_and(rested) {
             Some(EndReason::Rest)
@@ -83,7 +87,8 @@ impl Limits {
         let last_poured = pouring.map_or(0.0, Pouring::last_poured).max(self.pouring_time);
         let waiting = pouring.is_some_and(|pouring| !pouring.is_done());
         // A source that is held up moves the end: its share of the run is then not yet done.
-        let rest = self.run.rest.map(|rest| if waiting { last_poured.max(time) + rest } else { last_poured + rest });
+        let rest =
+            self.run.rest.map(|rest| if waiting { last_poured.max(time) + rest } else { last_poured + rest });
         let shares = [
             share(time, self.run.time),
             share(totals.steps as f64, self.run.steps.map(|steps| steps as f64)),

@@ -13,8 +13,8 @@ use crate::observe::measure::{Cadence, Measure, Snapshot};
 use crate::observe::{measures, moments};
 use crate::random::{Phase, Streams};
 use crate::record::state::{Beginning, SavedState};
-use crate::scenario::initial::rescale;
-use crate::scenario::model::{InitialVelocities, Scenario};
+use crate::scenario::initial::{rescale_gas, stated_temperature};
+use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use limits::{EndReason, Limits};
 use pouring::{Pouring, PouringError};
@@ -49,7 +49,11 @@ pub struct Simulation<'s, V: Vector> {
 
 impl<'s, V: Vector> Simulation<'s, V> {
     /// Starts from `gas`, the scenario's initial state, after its equilibration if it asks for one.
-    pub fn start(scenario: &'s Scenario<V>, mut gas: Gas<V>, laps: &mut dyn Laps) -> Result<Self, SimulationError> {
+    pub fn start(
+        scenario: &'s Scenario<V>,
+        mut gas: Gas<V>,
+        laps: &mut dyn Laps,
+    ) -> Result<Self, SimulationError> {
         if scenario.initial.equilibrate > 0.0 {
             equilibrate(scenario, &mut gas, laps)?;
         }
@@ -57,7 +61,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             particles: gas.len() as u64,
             kinetic_energy: moments::kinetic_energy(&gas),
             momentum: moments::momentum(&gas),
-            momentum_scale: gas.velocities().iter().map(|v| v.length()).sum::<f64>() * gas.grain.mass,
+            momentum_scale: moments::momentum_scale(&gas),
         };
         let mut simulation = Self::assemble(scenario, gas, beginning);
         simulation.take_samples();
@@ -66,7 +70,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
 
     /// Goes on from a saved state, to the same bits as if there had been no interruption.
     pub fn resume(scenario: &'s Scenario<V>, saved: SavedState<V>) -> Self {
-        let gas = saved.gas(assembly::grid(scenario), scenario.grain);
+        let gas = saved.gas(scenario.grid(), scenario.grain);
         let mut simulation = Self::assemble(scenario, gas, saved.beginning);
         simulation.engine.restore(&saved.engine);
         simulation.totals = saved.totals;
@@ -172,7 +176,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 
     /// Everything that the next step and the final figures depend on.
-    pub fn saved_state(&self, recordings: u64) -> SavedState<V> {
+    pub fn saved_state(&self, recordings: u64, states: u64) -> SavedState<V> {
         SavedState {
             time: self.gas.clock.time(),
             compensation: self.gas.clock.compensation(),
@@ -182,6 +186,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             totals: self.totals.clone(),
             last_poured: self.pouring.as_ref().map_or(-1.0, Pouring::last_poured),
             recordings,
+            states,
             samples: self.samples.clone(),
             memories: self.measures.iter().map(|m| (m.name().to_owned(), m.memory())).collect(),
             beginning: self.beginning,
@@ -204,12 +209,7 @@ fn equilibrate<V: Vector>(
         let report = engine.step(gas, laps)?;
         totals.add(&report, gas.len());
     }
-    let temperature = match scenario.initial.velocities {
-        InitialVelocities::Maxwell(temperature) => temperature,
-        InitialVelocities::Uniform(w) => scenario.grain.mass * w * w / 3.0,
-        InitialVelocities::Rest => 0.0,
-    };
-    rescale(gas, temperature);
+    rescale_gas(gas, stated_temperature(scenario));
     gas.clock = Default::default();
     Ok(())
 }

@@ -107,14 +107,19 @@ impl<V: Vector> Pouring<V> {
         let grid = gas.grid();
         let places: Vec<usize> =
             (0..V::DIMENSION).map(|a| (grid.size()[a] / width).ceil().max(1.0) as usize).collect();
-        let full = (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / gas.grain.volume::<V>()) as u16;
+        let full =
+            (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / gas.grain.volume::<V>()) as u16;
         let mut counts = vec![0_u16; places.iter().product()];
         let mut top = 0;
         for &position in gas.positions() {
             let (mut place, mut level) = (0, 0);
             for axis in (0..V::DIMENSION).rev() {
                 let upwards = axis != self.axis || self.up > 0.0;
-                let x = if upwards { position[axis] - grid.origin()[axis] } else { grid.end()[axis] - position[axis] };
+                let x = if upwards {
+                    position[axis] - grid.origin()[axis]
+                } else {
+                    grid.end()[axis] - position[axis]
+                };
                 let k = ((x / width) as usize).min(places[axis] - 1);
                 place = place * places[axis] + k;
                 level = if axis == self.axis { k + 1 } else { level };

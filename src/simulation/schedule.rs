@@ -26,8 +26,7 @@ impl Spread {
         match self {
             Spread::Even(number) => done <= u64::from(number) && progress >= k / f64::from(number.max(1)),
             Spread::Logarithmic(number) => {
-                done == 0
-                    || done <= u64::from(number) && progress >= logarithmic_place(done, number)
+                done == 0 || done <= u64::from(number) && progress >= logarithmic_place(done, number)
             }
             Spread::Every(interval) => time >= k * interval,
             Spread::Inside(number) => {

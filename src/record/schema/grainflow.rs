@@ -71,6 +71,20 @@ message! {
 }
 
 message! {
+    /// What a run began with.
+    "grainflow" "grainflow/Beginning.proto" Beginning {
+        /// Grains at t = 0.
+        particles: u64 = 1 [uint64],
+        /// Kinetic energy at t = 0 [mass·length²/time²].
+        kinetic_energy: Option<f64> = 2 [double, optional],
+        /// Momentum at t = 0 [mass·length/time].
+        momentum: Vec<f64> = 3 [double, repeated],
+        /// Σ m|v| at t = 0 [mass·length/time].
+        momentum_scale: Option<f64> = 4 [double, optional],
+    }
+}
+
+message! {
     /// What a measure remembers.
     "grainflow" "grainflow/Memory.proto" Memory {
         /// The measure's name.
@@ -118,5 +132,9 @@ message! {
         samples: Vec<u64> = 16 [uint64, repeated],
         /// Memories of the measures.
         memories: Vec<Memory> = 17 [message, repeated] ".grainflow.Memory",
+        /// What the run began with.
+        beginning: Option<Beginning> = 18 [message, optional] ".grainflow.Beginning",
+        /// States saved before this one.
+        states: u64 = 19 [uint64],
     }
 }

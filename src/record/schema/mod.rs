@@ -146,5 +146,6 @@ pub(crate) const ALL: &[MessageTable] = &[
     grainflow::Engine::TABLE,
     grainflow::Totals::TABLE,
     grainflow::Memory::TABLE,
+    grainflow::Beginning::TABLE,
     grainflow::State::TABLE,
 ];
