@@ -92,7 +92,7 @@ fn each_scenario_shows_what_it_is_about() {
     has(cooling(), &["Haff’s law", "homogeneous cooling", "Impact parameter", "Cluster share", "eq. 4.44"]);
     has(
         shear(),
-        &["linear law", "Wall shear stress", "steady mean 0.001310", "2.1 to 25 %", "Wall normal stress"],
+        &["linear law", "Wall shear stress", "steady mean 0.001310", "2.1 ± 25 %", "Wall normal stress"],
     );
     has(pipe(), &["Density in space and time", "slope −1.610 ± 0.040", "Density contrast", "&gt; 2.5"]);
     has(bed(), &["interrupted before its end", "3000 spheres", "Drag"]);

@@ -87,7 +87,7 @@ fn sentence(evidence: &Evidence<'_>) -> String {
     }
     if !setup.size.is_empty() {
         let sides: Vec<String> = setup.size.iter().map(|s| number(*s, 5)).collect();
-        place.push(format!("a box of {} {}", sides.join(" × "), setup.units[0]).trim_end().to_owned());
+        place.push(format!("a box of {} {}", sides.join(" × "), setup.named(0)).trim_end().to_owned());
     }
     if !place.is_empty() {
         let _ = write!(text, " at {}", place.join(" in ").replacen("a box", "a box", 1));
@@ -104,7 +104,7 @@ fn sentence(evidence: &Evidence<'_>) -> String {
     });
     let _ = write!(text, ", simulated with {}", engine_name(&setup.engine));
     if let Some(time) = evidence.figure("simulated_time") {
-        let _ = write!(text, " for {} {}", number(time, 4), setup.units[2]);
+        let _ = write!(text, " for {} {}", number(time, 4), setup.named(2));
         text = text.trim_end().to_owned();
     }
     if let Some(collisions) = evidence.figure("collisions_per_particle") {
@@ -146,7 +146,7 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Comparison]) -> Strin
         .map_or_else(String::new, |r| format!("<dd>expected {}</dd>", escape(&r.expected.text())));
     let unit = evidence.column(name).map_or_else(String::new, |(_, column)| evidence.setup.unit(column.unit));
     let unit = match name {
-        "simulated_time" => evidence.setup.units[2].clone(),
+        "simulated_time" => evidence.setup.named(2),
         "wall_seconds" => "s".to_owned(),
         _ => unit,
     };

@@ -19,7 +19,7 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
         return Vec::new();
     };
     let surface = Surface::of(last);
-    let mut plots = vec![growth(evidence, &grown)];
+    let mut plots = vec![growth(evidence, &grown, surface.apex)];
     plots.extend(collapse(evidence, &grown, surface.apex));
     plots.push(final_form(evidence, &surface));
     plots
@@ -36,14 +36,14 @@ fn surface_points(surface: &Profile) -> Vec<[f64; 2]> {
 }
 
 /// h(x) at some times, from the first to the last.
-fn growth(evidence: &Evidence<'_>, grown: &[&Profile]) -> Plot {
+fn growth(evidence: &Evidence<'_>, grown: &[&Profile], apex: f64) -> Plot {
     let shown = spread(grown, STAGES);
     let last = shown[shown.len() - 1];
     Plot {
         title: "Growth of the heap".to_owned(),
         x_label: evidence.setup.length_label("position x"),
         y_label: evidence.setup.length_label("height h"),
-        curves: staged(&shown, surface_points),
+        curves: staged(&shown, |surface| around_body(surface_points(surface), apex)),
         ordered: Some(ends(&shown, last)),
         wide: true,
         same_units: true,
@@ -75,7 +75,8 @@ fn collapse(evidence: &Evidence<'_>, grown: &[&Profile], apex: f64) -> Option<Pl
     let shown = spread(&pouring, STAGES);
     let rescaled = |surface: &Profile| {
         let root = surface.time.sqrt();
-        surface_points(surface).into_iter().map(|[x, h]| [(x - apex) / root, h / root]).collect()
+        let near = around_body(surface_points(surface), apex);
+        near.into_iter().map(|[x, h]| [(x - apex) / root, h / root]).collect()
     };
     let unit = evidence.setup.unit(Dimension { length: 1, ..Dimension::default() });
     let time = evidence.setup.unit(Dimension { time: 1, ..Dimension::default() });
@@ -119,9 +120,9 @@ impl Surface {
             }
             _ => (highest[0], highest[1]),
         };
-        let rows: Vec<[f64; 3]> = points
+        let rows: Vec<[f64; 3]> = body(&points, highest[0])
             .iter()
-            .filter(|p| p[1] > 0.0 && p[1] < peak)
+            .filter(|p| p[1] < peak)
             .map(|p| [peak - p[1], (peak / p[1]).ln(), (p[0] - apex).abs()])
             .collect();
         let tail = if rows.len() < 6 { None } else { two_terms(&rows).map(|[a, b]| [peak, a, b]) };
@@ -130,8 +131,7 @@ impl Surface {
 
     /// Both sides of the fitted tail, from the lowest height that stands to the top.
     fn tail_curve(&self, [peak, inverse_slope, length]: [f64; 3]) -> Vec<[f64; 2]> {
-        let positive = self.points.iter().map(|p| p[1]).filter(|h| *h > 0.0);
-        let lowest = positive.fold(peak, f64::min);
+        let lowest = body(&self.points, self.apex).iter().map(|p| p[1]).fold(peak, f64::min);
         let place = |height: f64| inverse_slope * (peak - height) + length * (peak / height).ln();
         let heights = (0..=200).map(|k| lowest * (peak / lowest).powf(f64::from(k) / 200.0));
         let right: Vec<[f64; 2]> = heights.map(|h| [self.apex + place(h), h]).collect();
@@ -140,9 +140,33 @@ impl Surface {
     }
 }
 
+/// The part that hangs together around `apex`: single grains that rolled away do not belong to the heap.
+fn body(points: &[[f64; 2]], apex: f64) -> &[[f64; 2]] {
+    let centre = points.partition_point(|p| p[0] < apex).min(points.len().saturating_sub(1));
+    let first = points[..centre].iter().rposition(|p| !(p[1] > 0.0)).map_or(0, |gap| gap + 1);
+    let after = points[centre..].iter().position(|p| !(p[1] > 0.0)).map_or(points.len(), |gap| centre + gap);
+    &points[first..after.max(first)]
+}
+
+/// The stretch that holds the heap, with a little of the floor on both sides.
+fn around_body(points: Vec<[f64; 2]>, apex: f64) -> Vec<[f64; 2]> {
+    let body = body(&points, apex);
+    let (Some(first), Some(last)) = (body.first(), body.last()) else {
+        return points;
+    };
+    let room = 0.15 * (last[0] - first[0]);
+    let ends = [first[0] - room, last[0] + room];
+    points.into_iter().filter(|p| p[0] >= ends[0] && p[0] <= ends[1]).collect()
+}
+
 /// The last surface, its flanks and its tail.
 fn final_form(evidence: &Evidence<'_>, surface: &Surface) -> Plot {
-    let mut curves = vec![Curve::new("surface", surface.points.clone(), Stroke::Dots, Ink::Series(0))];
+    let mut curves = vec![Curve::new(
+        "surface",
+        around_body(surface.points.clone(), surface.apex),
+        Stroke::Dots,
+        Ink::Series(0),
+    )];
     let highest = surface.points.iter().map(|p| p[1]).fold(0.0, f64::max);
     let slopes: Vec<f64> = surface.flanks.iter().flatten().map(|l| l.slope.abs()).collect();
     let mean = slopes.iter().sum::<f64>() / slopes.len().max(1) as f64;

@@ -120,7 +120,7 @@ pub(super) fn unit(dimension: Dimension, names: &[String; 3]) -> String {
 
 /// `heap_slope` as "heap slope".
 pub(super) fn in_words(name: &str) -> String {
-    name.replace(['_', '-'], " ")
+    name.replace(['_', '-'], " ").replace("poisson", "Poisson")
 }
 
 #[cfg(test)]

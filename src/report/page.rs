@@ -92,8 +92,9 @@ fn grains(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
 
 fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, width: f64) -> String {
     let raster = picture::picture(frame, scene, fastest, setup.diameter, width);
-    let time = setup.unit(Dimension { time: 1, ..Dimension::default() });
+    let time = if setup.units[2] == "time" { "" } else { &setup.units[2] };
     let moment = format!("t = {} {time}", number(frame.time, 4));
+    let moment = moment.trim_end();
     let shown = frame.positions.len() as u64;
     let count = match frame.grains.max(shown) {
         all if all > shown => format!("{} of {} grains", number(shown as f64, 9), number(all as f64, 9)),

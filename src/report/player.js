@@ -12,7 +12,15 @@
   const PAPER = "#f7f5f0", WALL = "#3c3a36", PERIODIC = "#b9b3a5";
   const FULL_LENGTH = 12; // seconds that a whole run takes at speed 1
   const view = { azimuth: -0.6, elevation: 0.35 };
+  const HAZES = 12; // steps from near to far, where colours turn to paper
+  const hazy = Array.from({ length: HAZES }, (_, k) => run.colours.map((colour) => blend(colour, PAPER, 0.7 * k / (HAZES - 1))));
   let current = frames.length - 1, isPlaying = false, place = current, lastTick = 0;
+
+  function blend(first, second, share) {
+    const channel = (colour, k) => parseInt(colour.slice(1 + 2 * k, 3 + 2 * k), 16);
+    const mixed = [0, 1, 2].map((k) => Math.round((1 - share) * channel(first, k) + share * channel(second, k)));
+    return `rgb(${mixed.join(",")})`;
+  }
 
   function unpack(text) {
     const raw = atob(text);
@@ -83,14 +91,16 @@
     }
     spheres.sort((a, b) => b[2] - a[2]);
     const last = run.colours.length - 1;
+    pen.lineWidth = 0.7;
+    pen.strokeStyle = "rgba(30, 20, 40, 0.35)";
     for (const [x, y, depth, speed] of spheres) {
-      pen.globalAlpha = Math.max(0.25, Math.min(1, 0.68 - 0.75 * depth));
-      pen.fillStyle = run.colours[Math.min(last, (speed * (last + 1)) >> 8)];
+      const haze = Math.max(0, Math.min(1, 0.5 + depth)) * (HAZES - 1);
+      pen.fillStyle = hazy[Math.round(haze)][Math.min(last, (speed * (last + 1)) >> 8)];
       pen.beginPath();
       pen.arc(x, y, radius, 0, 7);
       pen.fill();
+      if (radius > 2.5) pen.stroke();
     }
-    pen.globalAlpha = 1;
   }
 
   // The sides of the box: walls thick, periodic sides dashed, open sides not at all.

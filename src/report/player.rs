@@ -55,7 +55,7 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
         "gravity": setup.gravity,
         "diameter": setup.diameter,
         "colours": colours,
-        "units": { "time": setup.units[2], "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
+        "units": { "time": if setup.units[2] == "time" { "" } else { &setup.units[2] }, "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
     });
     let hint = if scene.is_deep { " Drag, or the arrow keys with Shift, turn the box." } else { "" };
     let aspect = if scene.is_deep { 1.5 } else { scene.aspect() };

@@ -239,7 +239,8 @@ impl Plot {
     }
 
     fn write_legend(&self, html: &mut String) {
-        let named = self.curves.iter().filter(|c| !c.name.is_empty());
+        // One curve needs no name.
+        let named = self.curves.iter().filter(|c| !c.name.is_empty() && self.curves.len() > 1);
         let entries: Vec<String> = named
             .map(|curve| {
                 let kind = match curve.stroke {

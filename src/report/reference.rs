@@ -63,7 +63,7 @@ impl Expected {
             Self::Between(lower, upper) => format!("{} … {}", number(lower, 3), number(upper, 3)),
             Self::Below(upper) => format!("< {}", number(upper, 3)),
             Self::Above(lower) => format!("> {}", number(lower, 3)),
-            Self::Near(value, share) => format!("{} to {} %", number(value, 4), number(100.0 * share, 2)),
+            Self::Near(value, share) => format!("{} ± {} %", number(value, 4), number(100.0 * share, 2)),
         }
     }
 }
@@ -207,7 +207,7 @@ fn bagnold_stress(evidence: &Evidence<'_>) -> Option<Comparison> {
     if !is_known || speed == 0.0 {
         return None;
     }
-    let source = "Trial implementation with cells of 2.5 d at r = 0.9, ν = 0.1: 2.1 to 25 %; Navier–Stokes–Enskog theory gives 2.12. The value depends on the cell size; F ∝ v² is Bagnold’s law (Müller 2001, fig. 3.13)";
+    let source = "Trial implementation with cells of 2.5 d at r = 0.9, ν = 0.1: 2.1 ± 25 %; Navier–Stokes–Enskog theory gives 2.12. The value depends on the cell size; F ∝ v² is Bagnold’s law (Müller 2001, fig. 3.13)";
     let factor = height * height / (speed * speed * setup.mass);
     let mut row = evidence.compare("wall_shear_stress", factor, Expected::Near(2.1, 0.25), source)?;
     row.figure = "wall_shear_stress · H²/(m v²)".to_owned();

@@ -105,7 +105,18 @@ impl Setup {
     /// "name [unit]".
     pub(super) fn with_unit(&self, name: &str, dimension: Dimension) -> String {
         let unit = self.unit(dimension);
-        if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+        // "time [time]" says nothing.
+        if unit.is_empty() || unit == name { name.to_owned() } else { format!("{name} [{unit}]") }
+    }
+
+    /// The unit of length (0), mass (1) or time (2) behind a number: one without a name is called a unit.
+    pub(super) fn named(&self, kind: usize) -> String {
+        let kinds = ["length", "mass", "time"];
+        if self.units[kind] == kinds[kind] {
+            format!("{} units", kinds[kind])
+        } else {
+            self.units[kind].clone()
+        }
     }
 
     /// The label of a time axis.

@@ -76,11 +76,13 @@ fn upper_end(table: &[Vec<f64>]) -> f64 {
 /// The last profile, with some before it behind.
 fn last_profiles(evidence: &Evidence<'_>, densities: &[&Profile]) -> Option<Plot> {
     let last = densities.last()?;
-    let shown = spread(densities, 6);
+    let shown = spread(densities, 3);
     let curve = |(index, profile): (usize, &&Profile)| {
         let share = if shown.len() > 1 { index as f64 / (shown.len() - 1) as f64 } else { 0.0 };
         let points = points(values(profile, "position", 0), values(profile, "volume_fraction", 1));
-        Curve::new("", points, Stroke::Line, Ink::Ordered(share))
+        // The last stands out.
+        let stroke = if index + 1 == shown.len() { Stroke::Line } else { Stroke::Faint };
+        Curve::new("", points, stroke, Ink::Ordered(share))
     };
     let time = |profile: &Profile| format!("t = {}", number(profile.time, 3));
     Some(Plot {

@@ -181,12 +181,12 @@ pub(crate) fn cooling() -> Sample {
     for k in 0..=120 {
         let time = if k == 0 { 0.0 } else { 0.05 * 1.083f64.powi(k) };
         let growth = 1.0 + (time / 60.0).powf(1.2) / (1.0 + time / 200.0);
-        let temperature = (1.0 + time / 2.66f64).powi(-2) * growth;
+        let temperature = (1.0 + time / 6.24f64).powi(-2) * growth;
         log.series.push(vec![
             time,
             1e4 * temperature,
             temperature,
-            11.0 * (1.0 + time / 2.66).ln(),
+            11.0 * (1.0 + time / 6.24).ln(),
             10_000.0,
             0.02 + 0.5 * time / (time + 100.0),
         ]);
