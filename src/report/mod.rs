@@ -1,1 +1,37 @@
-//! Pictures and pages.
+//! Pictures and pages: what a log and its summary look like to a reader.
+
+mod axis;
+mod colour;
+mod energy_plots;
+mod escape;
+mod evidence;
+mod fit;
+mod header;
+mod heap_plots;
+mod number;
+mod other_plots;
+mod page;
+mod parameters;
+mod picture;
+mod player;
+mod plot;
+mod raster;
+mod reference;
+mod scene;
+mod setup;
+mod shear_plots;
+mod wave_plots;
+
+use serde_json::{Map, Value};
+
+pub use picture::grains_png;
+
+use crate::record::contents::RunLog;
+
+/// `report.html` of a run: one page that needs no network, with its parameters, plots, theory beside what was
+/// measured, pictures of the grains, and a player of the frames.
+///
+/// It looks at the log and at the summary alone, so a report can be made again from a stored run.
+pub fn render(log: &RunLog, summary: &Map<String, Value>) -> String {
+    page::page(log, summary)
+}

@@ -1,0 +1,183 @@
+//! How the energy goes: temperature against time and against collisions, beside Haff's law where it applies.
+
+use glam::{DVec2, DVec3};
+
+use super::axis::Scale;
+use super::evidence::Evidence;
+use super::number::number;
+use super::plot::{Curve, Ink, Plot, Stroke};
+use crate::law::kinetic_theory::{
+    collision_frequency, cooling_per_collision, haff_time, sonine_cooling_factor,
+    sonine_cooling_factor_per_collision,
+};
+use crate::matter::grain::Grain;
+use crate::space::Vector;
+
+/// Haff's law for a run, with the first Sonine correction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Haff {
+    /// T₀: temperature at the start [energy].
+    pub temperature: f64,
+    /// t₀: time in which the temperature falls to a quarter [time].
+    pub time: f64,
+    /// The temperature falls by e in this many collisions per particle, inverted.
+    pub per_collision: f64,
+}
+
+impl Haff {
+    /// The law of a homogeneous gas that cools: periodic, without force, of constant restitution below 1.
+    pub(super) fn of(evidence: &Evidence<'_>) -> Option<Self> {
+        let setup = evidence.setup;
+        let restitution = setup.restitution.filter(|r| (0.0..1.0).contains(r))?;
+        let nu = setup.volume_fraction.filter(|nu| *nu > 0.0)?;
+        if !setup.is_periodic || setup.has_gravity() || setup.source.is_some() {
+            return None;
+        }
+        let temperature = initial_temperature(evidence).filter(|t| *t > 0.0)?;
+        let grain = Grain { diameter: setup.diameter, mass: setup.mass };
+        // Plain DSMC collides at the rate of a Boltzmann gas.
+        let is_boltzmann = setup.engine == "dsmc";
+        let (time, per_collision) = match setup.dimension {
+            3 => law::<DVec3>(grain, nu, temperature, restitution, is_boltzmann),
+            _ => law::<DVec2>(grain, nu, temperature, restitution, is_boltzmann),
+        };
+        Some(Self { temperature, time, per_collision })
+    }
+
+    /// T at `time`.
+    pub(super) fn at_time(&self, time: f64) -> f64 {
+        self.temperature / (1.0 + time / self.time).powi(2)
+    }
+
+    /// t₀ as measured: 1/slope of √(T₀/T) − 1 over the points up to 2 t₀, through the origin.
+    pub(super) fn measured_time(&self, temperatures: &[[f64; 2]]) -> Option<f64> {
+        let early = temperatures.iter().filter(|p| p[0] > 0.0 && p[0] <= 2.0 * self.time && p[1] > 0.0);
+        let (mut squares, mut products, mut count) = (0.0, 0.0, 0);
+        for [time, temperature] in early {
+            squares += time * time;
+            products += time * ((self.temperature / temperature).sqrt() - 1.0);
+            count += 1;
+        }
+        (count >= 3 && products > 0.0).then(|| squares / products)
+    }
+}
+
+fn law<V: Vector>(
+    grain: Grain,
+    nu: f64,
+    temperature: f64,
+    restitution: f64,
+    is_boltzmann: bool,
+) -> (f64, f64) {
+    let correlation = if is_boltzmann { 1.0 } else { V::contact_correlation(nu) };
+    let frequency = collision_frequency::<V>(grain, nu, temperature, correlation);
+    (
+        haff_time::<V>(restitution, frequency) / sonine_cooling_factor::<V>(restitution),
+        2.0 * cooling_per_collision::<V>(restitution) * sonine_cooling_factor_per_collision::<V>(restitution),
+    )
+}
+
+/// From the first recording, else from the energy of the summary.
+fn initial_temperature(evidence: &Evidence<'_>) -> Option<f64> {
+    if let Some((column, _)) = evidence.column("temperature")
+        && let Some(first) = evidence.series(0, column).first()
+        && first[0] == 0.0
+    {
+        return Some(first[1]);
+    }
+    let energy = evidence.figure("kinetic_energy_initial")?;
+    Some(2.0 * energy / (evidence.setup.count? * evidence.setup.dimension as f64))
+}
+
+/// Columns of the series that these plots show.
+pub(super) const SHOWN: [&str; 3] = ["kinetic_energy", "temperature", "collisions_per_particle"];
+
+/// Temperature (or energy) against time and collisions, and collisions against time.
+pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
+    let mut plots = Vec::new();
+    let haff = Haff::of(evidence);
+    if let Some((column, described)) = evidence.column("temperature") {
+        plots.push(against_time(evidence, column, haff, evidence.setup.with_unit("T", described.unit)));
+        if let Some((collisions, _)) = evidence.column("collisions_per_particle") {
+            let points = evidence.series(collisions, column);
+            plots.extend(against_collisions(points, haff, evidence.setup.with_unit("T", described.unit)));
+        }
+    }
+    if let Some((column, described)) = evidence.column("kinetic_energy") {
+        let points = evidence.series(0, column);
+        plots.push(Plot {
+            title: "Kinetic energy".to_owned(),
+            x_label: evidence.setup.time_label(),
+            y_label: evidence.setup.with_unit("E", described.unit),
+            x_scale: scale_of_times(&points),
+            y_scale: Scale::Automatic,
+            curves: vec![Curve::new("", points, Stroke::Line, Ink::Series(0))],
+            ..Plot::default()
+        });
+    }
+    if let Some((column, _)) = evidence.column("collisions_per_particle") {
+        let points = evidence.series(0, column);
+        plots.push(Plot {
+            title: "Collisions".to_owned(),
+            x_label: evidence.setup.time_label(),
+            y_label: "collisions per particle, 2C/N".to_owned(),
+            x_scale: scale_of_times(&points),
+            curves: vec![Curve::new("", points, Stroke::Line, Ink::Series(0))],
+            ..Plot::default()
+        });
+    }
+    plots
+}
+
+fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, label: String) -> Plot {
+    let points = evidence.series(0, column);
+    let mut plot = Plot {
+        title: "Granular temperature against time".to_owned(),
+        x_label: evidence.setup.time_label(),
+        y_label: label,
+        x_scale: scale_of_times(&points),
+        y_scale: Scale::Automatic,
+        ..Plot::default()
+    };
+    if let Some(haff) = haff {
+        let law = points.iter().map(|p| [p[0], haff.at_time(p[0])]).collect();
+        plot.curves.push(Curve::new("Haff’s law, Sonine-corrected", law, Stroke::Dashed, Ink::Text));
+        plot.caption = format!(
+            "T₀(1 + t/t₀)⁻² with t₀ = {} from kinetic theory; nothing is fitted. A gas that clusters leaves the law.",
+            number(haff.time, 4)
+        );
+    }
+    plot.curves.insert(0, Curve::new("measured", points, Stroke::Line, Ink::Series(0)));
+    plot
+}
+
+fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) -> Option<Plot> {
+    if !points.iter().any(|p| p[0] > 0.0) {
+        return None;
+    }
+    let mut plot = Plot {
+        title: "Granular temperature against collisions".to_owned(),
+        x_label: "collisions per particle, 2C/N".to_owned(),
+        y_label: label,
+        y_scale: Scale::Automatic,
+        ..Plot::default()
+    };
+    if let Some(haff) = haff {
+        let decay = |p: &[f64; 2]| [p[0], haff.temperature * (-haff.per_collision * p[0]).exp()];
+        let law = points.iter().map(decay).collect();
+        plot.curves.push(Curve::new("homogeneous cooling", law, Stroke::Dashed, Ink::Text));
+        plot.caption = format!("T₀ exp(−γτ) with γ = {} per collision.", number(haff.per_collision, 4));
+    }
+    plot.curves.insert(0, Curve::new("measured", points, Stroke::Line, Ink::Series(0)));
+    Some(plot)
+}
+
+/// Recordings spread by factors want an axis of factors; the one at time 0 then stays outside.
+fn scale_of_times(points: &[[f64; 2]]) -> Scale {
+    let times: Vec<f64> = points.iter().map(|p| p[0]).filter(|t| *t > 0.0).collect();
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return Scale::Linear;
+    };
+    let middle = times[times.len() / 2];
+    if *last > first * 30.0 && middle < 0.3 * last { Scale::Logarithmic } else { Scale::Linear }
+}

@@ -1,0 +1,146 @@
+//! The page: its sections in the order of a reader's questions.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value};
+
+use super::escape::escape;
+use super::evidence::Evidence;
+use super::number::number;
+use super::plot::{Plot, colour_bar};
+use super::scene::Scene;
+use super::setup::Setup;
+use super::{colour::ColourMap, picture};
+use super::{
+    energy_plots, header, heap_plots, other_plots, parameters, player, reference, shear_plots, wave_plots,
+};
+use crate::observe::measure::Dimension;
+use crate::record::contents::{Frame, RunLog};
+
+/// The whole page.
+pub(super) fn page(log: &RunLog, summary: &Map<String, Value>) -> String {
+    let setup = Setup::of(log, summary);
+    let evidence = Evidence { log, summary, setup: &setup };
+    let frames = player::chosen(&log.frames);
+    let scene = Scene::of(&frames, log.walls.as_ref(), setup.diameter, !setup.has_gravity());
+    let mut body = header::html(&evidence);
+    body.push_str(&section("The run in motion", &grains(&frames, &scene, &setup)));
+    let references = references(&evidence);
+    body.push_str(&section("Beside theory and literature", &references));
+    let mut own = heap_plots::plots(&evidence);
+    own.extend(wave_plots::plots(&evidence));
+    own.extend(shear_plots::plots(&evidence));
+    body.push_str(&section("What the scenario is about", &plots(&own)));
+    body.push_str(&section("Energy and collisions", &plots(&energy_plots::plots(&evidence))));
+    body.push_str(&section("Everything else that was recorded", &plots(&other_plots::plots(&evidence))));
+    body.push_str(&section("How it was made", &parameters::html(&evidence)));
+    let version = log.metadata.get("version").map_or_else(String::new, |v| format!(" {}", escape(v)));
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n<title>{} · grainflow</title>\n<style>\n{}</style>\n</head>\n\
+         <body>\n<main>\n{body}<footer>Written by grainflow{version}.</footer>\n</main>\n</body>\n</html>\n",
+        escape(&setup.title),
+        include_str!("page.css"),
+    )
+}
+
+/// A section, or nothing when it has nothing to say.
+fn section(title: &str, content: &str) -> String {
+    if content.is_empty() {
+        String::new()
+    } else {
+        format!("<section>\n<h2>{title}</h2>\n{content}</section>\n")
+    }
+}
+
+fn plots(plots: &[Plot]) -> String {
+    if plots.is_empty() {
+        return String::new();
+    }
+    format!("<div class=\"plots\">\n{}</div>\n", plots.iter().map(Plot::html).collect::<String>())
+}
+
+/// The player, and pictures that need no script.
+fn grains(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
+    let shown: Vec<usize> = (0..frames.len()).filter(|k| !frames[*k].positions.is_empty()).collect();
+    let [.., last] = shown[..] else {
+        return String::new();
+    };
+    let mut chosen = vec![shown[0], shown[shown.len() / 2], last];
+    chosen.dedup();
+    // Flat pictures go below each other, the others side by side.
+    let is_flat = scene.aspect() > 2.0 || chosen.len() < 3;
+    let (class, width) = if is_flat { ("pictures", 1000.0) } else { ("pictures three", 640.0) };
+    let mut html = player::html(frames, scene, setup);
+    let _ = writeln!(html, "<div class=\"{class}\">");
+    for index in chosen {
+        html.push_str(&picture_figure(frames[index], scene, scene.speeds[index], setup, width));
+    }
+    html.push_str("</div>\n");
+    if scene.is_deep {
+        html.push_str(
+            "<p class=\"note\">Pictures look along the second axis; farther grains are paler.</p>\n",
+        );
+    }
+    let across = if scene.is_turned { scene.span(1) } else { scene.span(0) };
+    if 0.5 * setup.diameter * width / across < picture::LEAST_RADIUS {
+        html.push_str("<p class=\"note\">Grains are drawn larger than they are; at their size they could not be seen.</p>\n");
+    }
+    html
+}
+
+fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, width: f64) -> String {
+    let raster = picture::picture(frame, scene, fastest, setup.diameter, width);
+    let time = if setup.units[2] == "time" { "" } else { &setup.units[2] };
+    let moment = format!("t = {} {time}", number(frame.time, 4));
+    let moment = moment.trim_end();
+    let shown = frame.positions.len() as u64;
+    let count = match frame.grains.max(shown) {
+        all if all > shown => format!("{} of {} grains", number(shown as f64, 9), number(all as f64, 9)),
+        1 => "1 grain".to_owned(),
+        all => format!("{} grains", number(all as f64, 9)),
+    };
+    let speed = setup.with_unit("speed", Dimension { mass: 0, length: 1, time: -1 });
+    format!(
+        "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption>{}</figure>\n",
+        raster.address(),
+        escape(&format!("The grains at {moment}, coloured by speed")),
+        escape(&format!("{moment} · {count}")),
+        colour_bar(ColourMap::Speed, "0", &number(fastest, 3), &speed),
+    )
+}
+
+/// The table of references, with what it does not hold.
+fn references(evidence: &Evidence<'_>) -> String {
+    let rows = reference::comparisons(evidence);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from(
+        "<div class=\"references\"><table>\n<thead><tr><th>Figure</th><th>This run</th><th>Reference</th>\
+         <th>Agreement</th><th>Source</th></tr></thead>\n<tbody>\n",
+    );
+    for row in &rows {
+        let class = match row.agreement() {
+            reference::Agreement::Holds => "holds",
+            reference::Agreement::Borderline => "borderline",
+            reference::Agreement::Differs => "differs",
+        };
+        let _ = writeln!(
+            html,
+            "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"{class}\"><b>{}</b></td>\
+             <td class=\"source\">{}</td></tr>",
+            escape(&super::number::in_words(&row.figure)),
+            escape(&row.measured_text()),
+            escape(&row.expected.text()),
+            escape(&row.words()),
+            escape(&row.source),
+        );
+    }
+    html.push_str("</tbody>\n</table></div>\n");
+    if let Some(remark) = reference::remark(evidence) {
+        let _ = writeln!(html, "<p class=\"note\">{remark}</p>");
+    }
+    html
+}

@@ -1,0 +1,168 @@
+//! The player: frames thinned, quantised and packed into the page, beside the script that draws them.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::json;
+
+use super::colour::ColourMap;
+use super::escape::{escape, escape_json};
+use super::scene::{Scene, speed};
+use super::setup::Setup;
+use crate::record::contents::Frame;
+
+/// Frames beyond these are left out, evenly.
+const MOST_FRAMES: usize = 200;
+/// Grains beyond these are left out, the same ones in every frame.
+const MOST_POINTS: usize = 5000;
+/// The script of the player.
+const SCRIPT: &str = include_str!("player.js");
+
+/// The frames that the page shows: first and last, and others evenly between.
+pub(super) fn chosen(frames: &[Frame]) -> Vec<&Frame> {
+    if frames.len() <= MOST_FRAMES {
+        return frames.iter().collect();
+    }
+    let last = frames.len() - 1;
+    (0..MOST_FRAMES).map(|k| &frames[k * last / (MOST_FRAMES - 1)]).collect()
+}
+
+/// The player of `frames`, which are those of `scene`; empty when there is nothing to play.
+pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
+    let most = frames.iter().map(|f| f.positions.len()).max().unwrap_or(0);
+    if most == 0 {
+        return String::new();
+    }
+    let one_in = most.div_ceil(MOST_POINTS);
+    let packed: Vec<Packed> = frames
+        .iter()
+        .zip(&scene.speeds)
+        .map(|(frame, fastest)| Packed::of(frame, scene, *fastest, one_in))
+        .collect();
+    let mut bytes = Vec::new();
+    // All positions first: two-byte numbers must begin at even places.
+    packed.iter().for_each(|p| p.places.iter().for_each(|q| bytes.extend_from_slice(&q.to_le_bytes())));
+    packed.iter().for_each(|p| bytes.extend_from_slice(&p.speeds));
+    let colours: Vec<String> = (0..64).map(|k| ColourMap::Speed.hexadecimal(f64::from(k) / 63.0)).collect();
+    let parameters = json!({
+        "times": frames.iter().map(|f| f.time).collect::<Vec<f64>>(),
+        "counts": packed.iter().map(|p| p.speeds.len()).collect::<Vec<usize>>(),
+        "grains": frames.iter().map(|f| f.grains.max(f.positions.len() as u64)).collect::<Vec<u64>>(),
+        "speeds": scene.speeds,
+        "window": scene.window,
+        "sides": scene.sides,
+        "deep": scene.is_deep,
+        "turned": scene.is_turned,
+        "gravity": setup.gravity,
+        "diameter": setup.diameter,
+        "colours": colours,
+        "units": { "time": if setup.units[2] == "time" { "" } else { &setup.units[2] }, "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
+    });
+    let hint = if scene.is_deep { " Drag, or the arrow keys with Shift, turn the box." } else { "" };
+    let aspect = if scene.is_deep { 1.5 } else { scene.aspect() };
+    format!(
+        include_str!("player.html"),
+        aspect = aspect.clamp(0.4, 14.0),
+        last = frames.len() - 1,
+        gradient = ColourMap::Speed.gradient(),
+        caption = escape(&format!("{}{hint}", caption(frames, one_in, scene))),
+        parameters = escape_json(&parameters.to_string()),
+        data = STANDARD.encode(bytes),
+        script = SCRIPT,
+    )
+}
+
+/// What the player leaves out, and how it colours.
+fn caption(frames: &[&Frame], one_in: usize, scene: &Scene) -> String {
+    let thinned = frames.iter().any(|f| f.grains > f.positions.len() as u64);
+    let shown = match (one_in, thinned) {
+        (1, false) => "Every grain is shown".to_owned(),
+        (1, true) => "Part of the grains is shown".to_owned(),
+        (n, _) => format!("One in {n} of the recorded grains is shown"),
+    };
+    let is_shared = scene.speeds.windows(2).all(|pair| pair[0] == pair[1]);
+    let colours = if is_shared {
+        "one scale of colours for all times"
+    } else {
+        "each time has its own scale of colours"
+    };
+    format!("{shown}, at {} times; {colours}, which ends where the fastest 2 % begin.", frames.len())
+}
+
+/// A frame in two-byte places and one-byte speeds.
+struct Packed {
+    places: Vec<u16>,
+    speeds: Vec<u8>,
+}
+
+impl Packed {
+    fn of(frame: &Frame, scene: &Scene, fastest: f64, one_in: usize) -> Self {
+        let mut packed = Self { places: Vec::new(), speeds: Vec::new() };
+        let axes = if scene.is_deep { 3 } else { 2 };
+        for index in chosen_grains(frame, one_in) {
+            for axis in 0..axes {
+                let [lower, upper] = scene.window[axis];
+                let share = (f64::from(frame.positions[index][axis]) - lower) / (upper - lower);
+                packed.places.push((share.clamp(0.0, 1.0) * 65535.0).round() as u16);
+            }
+            let velocity = frame.velocities.get(index).copied().unwrap_or_default();
+            packed.speeds.push((255.0 * speed(velocity) / fastest).clamp(0.0, 255.0).round() as u8);
+        }
+        packed
+    }
+}
+
+/// The same grains in every frame as far as they have identities, never more than the page can hold.
+fn chosen_grains(frame: &Frame, one_in: usize) -> Vec<usize> {
+    let is_chosen = |index: &usize| match frame.ids.get(*index) {
+        // A grain's number says where it started, so neighbours are told apart by mixing its bits.
+        Some(id) => (id.wrapping_mul(0x9e37_79b1) >> 8) as usize % one_in == 0,
+        None => index % one_in == 0,
+    };
+    let chosen: Vec<usize> = (0..frame.positions.len()).filter(is_chosen).collect();
+    let surplus = chosen.len().div_ceil(MOST_POINTS).max(1);
+    chosen.into_iter().step_by(surplus).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::contents::RunLog;
+    use serde_json::Map;
+
+    fn frame(count: usize) -> Frame {
+        Frame {
+            grains: count as u64,
+            positions: (0..count).map(|k| [k as f32, 0.5, 0.0]).collect(),
+            velocities: vec![[1.0, 0.0, 0.0]; count],
+            ids: (0..count as u32).collect(),
+            ..Frame::default()
+        }
+    }
+
+    #[test]
+    fn first_and_last_frame_are_kept() {
+        let frames: Vec<Frame> =
+            (0..1001).map(|k| Frame { time: f64::from(k), ..Frame::default() }).collect();
+        let chosen = chosen(&frames);
+        assert_eq!((chosen.len(), chosen[0].time, chosen[199].time), (200, 0.0, 1000.0));
+    }
+
+    #[test]
+    fn grains_are_thinned_to_what_a_page_holds() {
+        for count in [4999, 5001, 20_000, 100_000] {
+            let kept = chosen_grains(&frame(count), count.div_ceil(MOST_POINTS)).len();
+            assert!((3500..=MOST_POINTS).contains(&kept) || kept == count, "{count}: {kept}");
+        }
+    }
+
+    #[test]
+    fn a_page_without_grains_has_no_player() {
+        let setup = Setup::of(&RunLog::default(), &Map::new());
+        let empty = frame(0);
+        let scene = Scene::of(&[&empty], None, 1.0, false);
+        assert_eq!(html(&[&empty], &scene, &setup), "");
+        let some = frame(3);
+        let scene = Scene::of(&[&some], None, 1.0, false);
+        assert!(html(&[&some], &scene, &setup).contains("<canvas"));
+    }
+}

@@ -1,0 +1,124 @@
+//! Reports of made-up runs: complete, self-contained, and safe for any text.
+//!
+//! `GRAINFLOW_REPORT_SAMPLES=DIR cargo test --test report` leaves the pages in DIR, to be looked at.
+
+mod report_samples;
+
+use grainflow::record::contents::{Frame, RunLog};
+use grainflow::report::{grains_png, render};
+use report_samples::{Sample, all, bed, cooling, heap, pipe, shear};
+use serde_json::Map;
+
+fn page(sample: &Sample) -> String {
+    render(&sample.log, &sample.summary)
+}
+
+#[test]
+fn every_sample_has_a_page_that_needs_no_network() {
+    for sample in all() {
+        let page = page(&sample);
+        if let Some(folder) = std::env::var_os("GRAINFLOW_REPORT_SAMPLES") {
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(std::path::Path::new(&folder).join(format!("{}.html", sample.name)), &page)
+                .unwrap();
+        }
+        assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"), "{}", sample.name);
+        for foreign in ["http://", "https://", "<link rel=\"stylesheet", "@import", "src=\"//"] {
+            assert!(!page.contains(foreign), "{}: {foreign}", sample.name);
+        }
+        // Numbers of plots; embedded data may spell anything.
+        assert!(
+            page.split("<svg").skip(1).all(|plot| !plot.contains("\"NaN") && !plot.contains(" NaN")),
+            "{}",
+            sample.name
+        );
+        assert!(page.len() < 12_000_000, "{}: {} bytes", sample.name, page.len());
+    }
+}
+
+#[test]
+fn text_from_outside_cannot_become_markup() {
+    let mut sample = cooling();
+    let attack = "</script><script>alert(1)</script>";
+    sample.log.metadata.insert(attack.to_owned(), attack.to_owned());
+    sample.log.scenario.push_str(&format!("[units]\ntime = '{attack}'\nlength = '{attack}'\n"));
+    sample.log.columns[5].name = attack.to_owned();
+    sample.log.profiles[0].name = attack.to_owned();
+    sample.log.walls.as_mut().unwrap().sides[0][0] = attack.to_owned();
+    sample.summary.insert(attack.to_owned(), attack.into());
+    sample.summary.insert("engine".to_owned(), attack.into());
+    let page = page(&sample);
+    assert!(!page.contains("<script>alert"));
+    // The page's own: parameters, data, player.
+    assert_eq!(page.matches("<script").count(), 3);
+}
+
+#[test]
+fn an_empty_log_has_a_page() {
+    let page = render(&RunLog::default(), &Map::new());
+    assert!(page.contains("<h1>run</h1>") && !page.contains("<canvas") && !page.contains("<svg"));
+}
+
+#[test]
+fn a_damaged_log_has_a_page() {
+    for mut sample in all() {
+        for frame in &mut sample.log.frames {
+            frame.velocities.truncate(3);
+            frame.ids.clear();
+            if let Some(position) = frame.positions.first_mut() {
+                *position = [f32::NAN, f32::INFINITY, 0.0];
+            }
+        }
+        sample.log.series.iter_mut().for_each(|row| row.truncate(2));
+        for profile in &mut sample.log.profiles {
+            profile.values[1].truncate(2);
+            profile.values[0].push(f64::NAN);
+        }
+        sample.log.walls = None;
+        assert!(page(&sample).contains("<h1>"), "{}", sample.name);
+    }
+}
+
+#[test]
+fn each_scenario_shows_what_it_is_about() {
+    let has = |sample: Sample, texts: &[&str]| {
+        let page = page(&sample);
+        texts.iter().for_each(|text| assert!(page.contains(text), "{}: {text}", sample.name));
+    };
+    has(
+        heap(),
+        &["Growth of the heap", "over √t", "logarithmic tail", "0.45 … 0.68", "Centre of mass height"],
+    );
+    has(cooling(), &["Haff’s law", "homogeneous cooling", "Impact parameter", "Cluster share", "eq. 4.44"]);
+    has(
+        shear(),
+        &["linear law", "Wall shear stress", "steady mean 0.001310", "2.1 ± 25 %", "Wall normal stress"],
+    );
+    has(pipe(), &["Density in space and time", "slope −1.610 ± 0.040", "Density contrast", "&gt; 2.5"]);
+    has(bed(), &["interrupted before its end", "3000 spheres", "Drag"]);
+}
+
+#[test]
+fn a_run_says_what_it_is_not_compared_with() {
+    let mut sample = shear();
+    assert!(page(&sample).contains("is not part of this run"));
+    sample.summary.insert("engine".to_owned(), "event-driven".into());
+    assert!(!page(&sample).contains("is not part of this run"));
+}
+
+#[test]
+fn theory_is_shown_where_it_holds() {
+    // With walls a gas does not cool as Haff says.
+    let mut sample = cooling();
+    sample.log.walls.as_mut().unwrap().sides[0][0] = "wall".to_owned();
+    assert!(!page(&sample).contains("Haff’s law"));
+}
+
+#[test]
+fn pictures_show_the_grains() {
+    let sample = heap();
+    let frame = sample.log.frames.last().unwrap();
+    let full = grains_png(frame, sample.log.walls.as_ref(), 1.0, 800);
+    let empty = grains_png(&Frame::default(), sample.log.walls.as_ref(), 1.0, 800);
+    assert!(full.starts_with(b"\x89PNG") && full.len() > 4 * empty.len());
+}
