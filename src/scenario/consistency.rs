@@ -26,6 +26,12 @@ pub(super) fn check<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Opti
     checks.into_iter().all(|check| check.is_some()).then_some(())
 }
 
+/// Whether a grain fits into the box, as far as is known.
+pub(super) fn fits<V: Vector>(story: &Story<'_, V>) -> bool {
+    let (Some(size), Some(diameter)) = (story.size, story.diameter) else { return true };
+    (0..V::DIMENSION).all(|axis| size[axis] >= diameter)
+}
+
 /// A grain fits into the box.
 fn room<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
     let (size, diameter) = (story.size?, story.diameter?);
@@ -117,7 +123,7 @@ pub(super) fn velocities<V: Vector>(
         story.gravity? != V::ZERO || story.boundary?.largest_wall_speed() > 0.0 || story.source?.is_some();
     match table.velocities? {
         None if !driven => {
-            root.mistake(
+            root.missing(
                 "initial.velocities",
                 "is missing, and nothing drives the grains; write { maxwell = 1.0 }",
             );

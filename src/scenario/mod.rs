@@ -75,7 +75,10 @@ fn document(file: &str, text: &str) -> Result<Document<String>, ScenarioError> {
     Document::parse(text.to_owned()).map_err(|error: TomlError| {
         let place =
             error.span().map_or(Place::File, |span| Place::Line(line_of(text.as_bytes(), span.start)));
-        let message = format!("is not TOML: {}; mend this first", error.message().replace('\n', ", "));
+        let problem = error.message().replace('\n', ", ");
+        let range =
+            if problem.contains("overflow") { " (whole numbers end at 9223372036854775807)" } else { "" };
+        let message = format!("is not TOML: {problem}{range}; mend this first");
         let mistake = Mistake { place, key: String::new(), message };
         ScenarioError { file: file.to_owned(), mistakes: vec![mistake] }
     })

@@ -52,6 +52,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     let boundary = boundary?;
     let sound =
         size.map(|size| walls::check_strokes(root, &boundary, size)).is_some_and(|sound| sound.is_some());
+    let sound = sound && consistency::fits(&story);
     let grid = match (sound, size, particles.grain, count, &source) {
         (true, Some(size), Some(grain), Some(count), Some(source)) => {
             let question = GridQuestion { engine: &engine, boundary: &boundary, size, grain, count };

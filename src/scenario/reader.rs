@@ -17,11 +17,13 @@ use crate::space::Vector;
 pub(super) struct Reader {
     locator: Locator,
     mistakes: RefCell<Vec<Mistake>>,
+    /// Keys that misspelt ones probably stand for: not to be called missing as well.
+    misspelt: RefCell<Vec<KeyPath>>,
 }
 
 impl Reader {
     pub(super) fn new(locator: Locator) -> Self {
-        Reader { locator, mistakes: RefCell::default() }
+        Reader { locator, mistakes: RefCell::default(), misspelt: RefCell::default() }
     }
 
     /// Notes a mistake at `path`.
@@ -29,6 +31,13 @@ impl Reader {
         let place = self.locator.place(path);
         let mistake = Mistake { place, key: path.to_string(), message: message.into() };
         self.mistakes.borrow_mut().push(mistake);
+    }
+
+    /// Notes that `path` is missing, unless it is there under a misspelt name.
+    fn missing(&self, path: &KeyPath, message: String) {
+        if !self.misspelt.borrow().iter().any(|misspelt| misspelt.holds(path)) {
+            self.mistake(path, message);
+        }
     }
 
     pub(super) fn into_mistakes(self) -> Vec<Mistake> {
@@ -69,7 +78,7 @@ impl<T> Found<T> {
     /// The value; its absence is noted with a `remedy`.
     pub(super) fn required(self, section: &Section<'_>, key: &str, remedy: &str) -> Option<T> {
         if matches!(self, Found::Missing) {
-            section.mistake(key, format!("is missing; {remedy}"));
+            section.missing(key, format!("is missing; {remedy}"));
         }
         match self {
             Found::Value(value) => Some(value),
@@ -140,6 +149,11 @@ impl<'a> Section<'a> {
         self.reader.mistake(&self.at(key), message);
     }
 
+    /// Notes that `key` is missing; `message` says what to write.
+    pub(super) fn missing(&self, key: &str, message: impl Into<String>) {
+        self.reader.missing(&self.at(key), message.into());
+    }
+
     /// Notes a mistake at the table itself.
     pub(super) fn mistake_here(&self, message: impl Into<String>) {
         self.reader.mistake(&self.path, message);
@@ -161,12 +175,15 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Where to put a key that is not known here.
     fn where_it_belongs(&self, key: &str, keys: &[&str]) -> String {
         let here = self.path.to_string();
         if let Some(meant) = nearest(key, keys.iter().copied()) {
+            self.reader.misspelt.borrow_mut().push(self.path.join(meant));
             return format!("; did you mean `{meant}`?");
         }
         if !here.is_empty() && schema::ROOT[..4].contains(&key) {
+            self.reader.misspelt.borrow_mut().push(KeyPath::of([key]));
             return format!("; `{key}` belongs at the top of the file, above the first [table]");
         }
         match schema::TABLES.iter().find(|(table, keys)| *table != here && keys.contains(&key)) {

@@ -34,7 +34,7 @@ fn every_built_in_scenario_is_right_for_every_engine() {
 #[test]
 fn the_built_in_scenarios_have_their_numbers() {
     assert_eq!(flat("shear", &[]).count, 2037);
-    assert_eq!(flat("pipe", &[]).count, 3870);
+    assert_eq!(flat("pipe", &[]).count, 3871);
     let cooling = flat("cooling", &[]);
     assert!((cooling.volume_fraction() - 0.25).abs() < 1e-12);
     assert!((flat("clustering", &[]).volume_fraction() - 0.25).abs() < 1e-12);
@@ -157,4 +157,39 @@ fn scaling_the_units_changes_no_cell() {
         ],
     );
     assert_eq!((small.cells, small.count), (base.cells, base.count));
+}
+
+/// Either a scenario or at least one mistake, whatever stands in the file.
+#[test]
+fn spoiled_files_never_pass_in_silence() {
+    let values =
+        ["nan", "-1", "0", "1e39", "'x'", "[]", "[1, 2, 3]", "{}", "{ log = 'a' }", "true", "1979-05-27"];
+    for (name, _) in builtin::list() {
+        let text = builtin::text(name).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, line) in lines.iter().enumerate() {
+            let Some((key, _)) = line.split_once('=').filter(|_| !line.starts_with('#')) else { continue };
+            for value in values.iter().map(|value| format!("{key}= {value}")).chain([String::new()]) {
+                let mut spoiled: Vec<&str> = lines.clone();
+                spoiled[number] = &value;
+                if let Err(error) = parse(name, &spoiled.join("\n"), &Overrides::default()) {
+                    assert!(!error.mistakes.is_empty(), "{name}: {value}");
+                    assert!(!error.to_string().is_empty());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn other_line_ends_and_a_byte_order_mark_are_read() {
+    let text = builtin::text("cooling").unwrap();
+    for text in [text.replace('\n', "\r\n"), format!("\u{feff}{text}")] {
+        let scenario = parse("cooling", &text, &Overrides { seed: Some(3), ..Default::default() }).unwrap();
+        assert_eq!(parse("cooling", scenario.source_text(), &Overrides::default()).unwrap(), scenario);
+    }
+    let wrong = format!("\u{feff}{}", text.replace("dimension = 2", "dimension = 5")).replace('\n', "\r\n");
+    let line = 1 + text.lines().position(|line| line.starts_with("dimension")).unwrap();
+    let error = parse("cooling", &wrong, &Overrides::default()).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("cooling:{line}: dimension: 5")), "{error}");
 }

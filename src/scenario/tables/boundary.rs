@@ -71,7 +71,7 @@ fn read_axis<V: Vector>(boundary: &Section<'_>, name: &str, axis: usize) -> Opti
 
 fn read_face<V: Vector>(axis_table: &Section<'_>, side: &str, axis: usize) -> Option<FaceTable<V>> {
     let Some(item) = axis_table.item(side) else {
-        axis_table.mistake(
+        axis_table.missing(
             side,
             format!("is missing: an axis has both faces or none; write {side} = {FACE_FORMS}"),
         );

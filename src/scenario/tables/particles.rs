@@ -67,7 +67,7 @@ fn amount<V: Vector>(particles: &Section<'_>) -> Option<Amount> {
             None
         }
         (false, false) => {
-            particles.mistake("count", "is missing, and so is volume_fraction; give one of the two");
+            particles.missing("count", "is missing, and so is volume_fraction; give one of the two");
             None
         }
         _ => count.optional()?.or(fraction.optional()?),

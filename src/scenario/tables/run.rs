@@ -18,7 +18,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>) -> Option<RunLimits> {
         rest: run.number("rest", Bound::NOT_NEGATIVE).optional()?,
     };
     if !schema::RUN.iter().any(|key| run.has(key)) {
-        run.mistake_here("never ends; give at least one of time, steps, collisions_per_particle, rest");
+        root.missing("run", "never ends; give at least one of time, steps, collisions_per_particle, rest");
         return None;
     }
     if limits.rest.is_some() && !root.has("source") {
