@@ -1,4 +1,5 @@
 //! Logs come back as they were written, and damage to them is never silent.
+#![expect(clippy::unwrap_used, reason = "functions that tests call stop the test like the tests themselves")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
