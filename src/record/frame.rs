@@ -104,7 +104,7 @@ pub(crate) fn frame_of(cloud: &PointCloud) -> Option<Frame> {
         *slot = offset(name, FLOAT32)?;
     }
     let id = offset("id", UINT32)?;
-    if cloud.data.len() % stride != 0 {
+    if !cloud.data.len().is_multiple_of(stride) {
         return None;
     }
     let mut frame = Frame::default();

@@ -56,11 +56,11 @@ pub(crate) fn scan(
         };
         match done {
             Ok(()) => {}
-            Err(Fault::End) => break,
+            Err(Fault::End) => return state.verdict(path, length, false),
             Err(fault) => return Err(fault.at(path, position)),
         }
     }
-    state.verdict(path, length)
+    state.verdict(path, length, true)
 }
 
 /// Why a scan stops.
@@ -135,8 +135,6 @@ struct Progress {
     header: bool,
     /// Whether the recorded part ended as it should.
     data_ended: bool,
-    /// Whether the whole file ended as it should.
-    ended: bool,
     /// Descriptions by number.
     schemas: BTreeMap<u16, Vec<u8>>,
     /// Topics by number of the channel.
@@ -187,19 +185,16 @@ impl Progress {
                 self.data_ended = true;
                 Ok(())
             }
-            Record::Footer(_) => {
-                self.ended = true;
-                Ok(())
-            }
             _ => Ok(()),
         }
     }
 
-    fn verdict(&self, path: &Path, length: u64) -> Result<Option<String>, LogError> {
+    /// What to say of a log of `length` bytes that was read up to its proper end, or not.
+    fn verdict(&self, path: &Path, length: u64, ended: bool) -> Result<Option<String>, LogError> {
         if !self.header {
             return Err(Fault::NoHeader.at(path, length));
         }
-        match (self.data_ended, self.ended) {
+        match (self.data_ended, ended) {
             (true, true) => Ok(None),
             (false, true) => Err(Fault::damage("its recorded part has no end").at(path, length)),
             (true, false) => Ok(Some(format!(

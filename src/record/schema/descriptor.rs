@@ -133,3 +133,129 @@ fn enumeration(table: &EnumTable) -> EnumDescriptorProto {
         ..Default::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::frame::{frame, point_cloud};
+    use crate::record::schema::{Described, foxglove, grainflow};
+    use crate::record::state::SavedState;
+    use crate::record::walls::scene;
+    use crate::record::{contents::Walls, saved};
+    use glam::DVec3;
+    use prost::encoding::{DecodeContext, WireType, decode_key, decode_varint, skip_field};
+
+    /// Walks `bytes` by the description of `full_name` alone; the names of the fields met.
+    fn walk(set: &FileDescriptorSet, full_name: &str, mut bytes: &[u8]) -> Vec<String> {
+        let wanted = full_name.trim_start_matches('.');
+        let file = set.file.iter().find(|file| {
+            file.message_type.iter().any(|message| format!("{}.{}", file.package(), message.name()) == wanted)
+        });
+        let message = &file.unwrap_or_else(|| panic!("{full_name} is not described")).message_type[0];
+        let mut seen = Vec::new();
+        while !bytes.is_empty() {
+            let (number, wire) = decode_key(&mut bytes).unwrap();
+            let field = message.field.iter().find(|field| field.number() == number as i32);
+            let field = field.unwrap_or_else(|| panic!("{full_name} has no field {number}"));
+            assert_eq!(wire, wire_type(field), "{full_name}.{}", field.name());
+            seen.push(format!("{}.{}", message.name(), field.name()));
+            if field.r#type() == Type::Message {
+                let length = decode_varint(&mut bytes).unwrap() as usize;
+                let (inner, rest) = bytes.split_at(length);
+                seen.extend(walk(set, field.type_name(), inner));
+                bytes = rest;
+            } else {
+                skip_field(wire, number, &mut bytes, DecodeContext::default()).unwrap();
+            }
+        }
+        seen
+    }
+
+    fn wire_type(field: &FieldDescriptorProto) -> WireType {
+        let packed = field.label() == Label::Repeated;
+        match field.r#type() {
+            _ if packed => WireType::LengthDelimited,
+            Type::Double => WireType::SixtyFourBit,
+            Type::Fixed32 => WireType::ThirtyTwoBit,
+            Type::String | Type::Bytes | Type::Message => WireType::LengthDelimited,
+            _ => WireType::Varint,
+        }
+    }
+
+    fn described<M: Described>(message: &M) -> Vec<String> {
+        let set = FileDescriptorSet::decode(descriptor_set(&M::TABLE).as_slice()).unwrap();
+        walk(&set, &M::TABLE.full_name(), &message.encode_to_vec())
+    }
+
+    fn state() -> SavedState<DVec3> {
+        let mut state =
+            SavedState { time: 1.0, samples: vec![3], recordings: 2, next_id: 9, ..Default::default() };
+        state.columns.spins = Some(Vec::new());
+        state.columns.species = Some(Vec::new());
+        state.columns.insert(0, DVec3::ONE, DVec3::ONE, 8);
+        state.memories = vec![("energy".to_owned(), vec![1.0])];
+        state.engine.step = 5;
+        state.totals.steps = 5;
+        state.totals.counts.collisions = 6;
+        state
+    }
+
+    #[test]
+    fn what_is_written_follows_its_description() {
+        let seen = described(&saved::part(&state(), 0..1));
+        for field in ["State.time", "State.spins", "State.samples", "Engine.step", "Totals.wall_momentum"] {
+            assert!(seen.iter().any(|name| name == field), "{field} in {seen:?}");
+        }
+        let cloud = point_cloud(&frame(1.0, &state().columns, None), 1_500_000_000);
+        let seen = described(&cloud);
+        for field in
+            ["Timestamp.seconds", "PackedElementField.type", "PointCloud.point_stride", "Quaternion.w"]
+        {
+            assert!(seen.iter().any(|name| name == field), "{field} in {seen:?}");
+        }
+        let walls = Walls {
+            sides: std::array::from_fn(|_| ["wall".to_owned(), "periodic".to_owned()]),
+            ..Default::default()
+        };
+        assert!(described(&scene(&walls, 7)).iter().any(|name| name == "LinePrimitive.type"));
+        let column =
+            grainflow::ProfileColumn { name: "x".to_owned(), unit: "1".to_owned(), values: vec![1.0] };
+        let profile = grainflow::Profile { time: 1.0, name: "p".to_owned(), columns: vec![column] };
+        assert_eq!(described(&profile).len(), 6);
+    }
+
+    #[test]
+    fn descriptions_are_complete_and_numbers_unique() {
+        for table in ALL {
+            let set = FileDescriptorSet::decode(descriptor_set(table).as_slice()).unwrap();
+            for (index, file) in set.file.iter().enumerate() {
+                for import in &file.dependency {
+                    let before = &set.file[..index];
+                    assert!(
+                        before.iter().any(|other| other.name() == import),
+                        "{import} before {}",
+                        file.name()
+                    );
+                }
+            }
+            let message = &set.file.last().unwrap().message_type[0];
+            assert_eq!(message.name(), table.name);
+            let mut numbers: Vec<i32> = message.field.iter().map(|field| field.number()).collect();
+            numbers.sort_unstable();
+            numbers.dedup();
+            assert_eq!(numbers.len(), table.fields.len(), "{}", table.name);
+        }
+    }
+
+    #[test]
+    fn fixed_numbers_are_described_as_such() {
+        let field = |message: &MessageTable, name: &str| {
+            let row = message.fields.iter().find(|row| row.name == name).unwrap();
+            super::field(row)
+        };
+        assert_eq!(field(&foxglove::PointCloud::TABLE, "point_stride").r#type(), Type::Fixed32);
+        assert_eq!(field(&foxglove::PackedElementField::TABLE, "offset").r#type(), Type::Fixed32);
+        assert_eq!(field(&foxglove::PackedElementField::TABLE, "r#type").r#type(), Type::Enum);
+        assert_eq!(field(&grainflow::State::TABLE, "species").proto3_optional, Some(true));
+    }
+}
