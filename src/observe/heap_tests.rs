@@ -70,9 +70,12 @@ fn grains_in_flight_do_not_count() {
     positions.push(DVec2::new(41.0, 55.0));
     positions.push(DVec2::new(1.0, 50.0));
     assert_eq!(figure_at(&bed, positions.clone(), "heap_height").0, Some(20.0));
-    // A grain one cell above the top is part of it.
-    positions.push(DVec2::new(41.0, 23.5));
-    assert_eq!(figure_at(&bed, positions, "heap_height").0, Some(23.5));
+    // The top fills the cell from 20 to 22: with one cell empty a grain belongs to the heap, with two it flies.
+    positions.push(DVec2::new(41.0, 26.5));
+    assert_eq!(figure_at(&bed, positions.clone(), "heap_height").0, Some(20.0));
+    positions.pop();
+    positions.push(DVec2::new(41.0, 25.5));
+    assert_eq!(figure_at(&bed, positions, "heap_height").0, Some(25.5));
 }
 
 #[test]
@@ -107,6 +110,8 @@ fn a_cone_is_cut_through_its_top() {
         let below = (0..).map(|k| h - 0.5 * f64::from(k)).take_while(|&z| z > 0.0);
         positions.extend(below.map(|z| DVec3::new(x, y, z)));
     }
+    // What stands beside the section does not matter.
+    positions.extend((0..20).map(|k| DVec3::new(15.0, 51.0, 0.5 * f64::from(k) + 0.5)));
     let (slope, error) = figure_at(&bed, positions, "heap_slope");
     assert!((slope.unwrap() - 0.5).abs() < 1e-12 && error.unwrap() < 1e-12, "{slope:?}");
 }
