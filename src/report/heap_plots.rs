@@ -143,8 +143,9 @@ impl Surface {
 /// The part that hangs together around `apex`: single grains that rolled away do not belong to the heap.
 fn body(points: &[[f64; 2]], apex: f64) -> &[[f64; 2]] {
     let centre = points.partition_point(|p| p[0] < apex).min(points.len().saturating_sub(1));
-    let first = points[..centre].iter().rposition(|p| !(p[1] > 0.0)).map_or(0, |gap| gap + 1);
-    let after = points[centre..].iter().position(|p| !(p[1] > 0.0)).map_or(points.len(), |gap| centre + gap);
+    let stands = |point: &[f64; 2]| point[1] > 0.0;
+    let first = points[..centre].iter().rposition(|p| !stands(p)).map_or(0, |gap| gap + 1);
+    let after = points[centre..].iter().position(|p| !stands(p)).map_or(points.len(), |gap| centre + gap);
     &points[first..after.max(first)]
 }
 

@@ -95,7 +95,12 @@ impl Comparison {
             (Agreement::Differs, Some(error)) if error > 0.0 => {
                 format!("differs, {} standard errors outside", number(distance / error, 2))
             }
-            (Agreement::Differs, _) => format!("differs, {} outside", number(distance, 2)),
+            (Agreement::Differs, _) => match self.expected {
+                Expected::Near(value, _) => {
+                    format!("differs by {} %", number(100.0 * (self.measured / value - 1.0), 2))
+                }
+                _ => format!("differs, {} outside", number(distance, 2)),
+            },
         }
     }
 
