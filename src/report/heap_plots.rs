@@ -86,7 +86,7 @@ fn collapse(evidence: &Evidence<'_>, grown: &[&Profile], apex: f64) -> Option<Pl
         y_label: format!("h/√t [{unit}/√({time})]"),
         curves: staged(&shown, rescaled),
         ordered: Some(ends(&shown, shown[shown.len() - 1])),
-        caption: "While grains are poured: a heap that keeps its shape falls on one curve (Müller 2001, section 3.5).".to_owned(),
+        caption: "While grains are poured: a heap that keeps its shape falls on one curve (Müller 2001, figs. 3.24–3.32).".to_owned(),
         ..Plot::default()
     })
 }
