@@ -32,10 +32,8 @@ pub(super) fn two_terms(rows: &[[f64; 3]]) -> Option<[f64; 2]> {
     let sum = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
     let (uu, uw, ww, uy, wy) = (sum(0, 0), sum(0, 1), sum(1, 1), sum(0, 2), sum(1, 2));
     let determinant = uu * ww - uw * uw;
-    if !(determinant > 1e-12 * uu * ww) {
-        return None;
-    }
-    Some([(uy * ww - wy * uw) / determinant, (wy * uu - uy * uw) / determinant])
+    let is_determined = determinant > 1e-12 * uu * ww;
+    is_determined.then(|| [(uy * ww - wy * uw) / determinant, (wy * uu - uy * uw) / determinant])
 }
 
 #[cfg(test)]

@@ -80,22 +80,14 @@ fn sentence(evidence: &Evidence<'_>) -> String {
     if let Some(restitution) = setup.restitution {
         let _ = write!(text, " of restitution {}", number(restitution, 6));
     }
-    let mut place = Vec::new();
     // A volume fraction of a box that is filled by pouring says nothing.
     if let Some(nu) = setup.volume_fraction.filter(|nu| *nu > 0.0 && setup.source.is_none()) {
-        place.push(format!("volume fraction {}", number(nu, 3)));
+        let _ = write!(text, " at volume fraction {}", number(nu, 3));
     }
     if !setup.size.is_empty() {
         let sides: Vec<String> = setup.size.iter().map(|s| number(*s, 5)).collect();
-        place.push(format!("a box of {} {}", sides.join(" × "), setup.named(0)).trim_end().to_owned());
-    }
-    if !place.is_empty() {
-        let _ = write!(text, " at {}", place.join(" in ").replacen("a box", "a box", 1));
-        if place.len() == 1 && setup.source.is_some() {
-            text = text.replacen(" at a box", " poured into a box", 1);
-        } else if place.len() == 1 {
-            text = text.replacen(" at a box", " in a box", 1);
-        }
+        let into = if setup.source.is_some() { "poured into" } else { "in" };
+        let _ = write!(text, " {into} a box of {} {}", sides.join(" × "), setup.named(0));
     }
     text.push_str(match (setup.wall_velocities.is_some(), setup.has_gravity()) {
         (true, _) => ", sheared by its walls",
@@ -105,7 +97,6 @@ fn sentence(evidence: &Evidence<'_>) -> String {
     let _ = write!(text, ", simulated with {}", engine_name(&setup.engine));
     if let Some(time) = evidence.figure("simulated_time") {
         let _ = write!(text, " for {} {}", number(time, 4), setup.named(2));
-        text = text.trim_end().to_owned();
     }
     if let Some(collisions) = evidence.figure("collisions_per_particle") {
         let _ = write!(text, " and {} collisions per particle", number(collisions, 4));

@@ -86,7 +86,7 @@ fn collapse(evidence: &Evidence<'_>, grown: &[&Profile], apex: f64) -> Option<Pl
         y_label: format!("h/√t [{unit}/√({time})]"),
         curves: staged(&shown, rescaled),
         ordered: Some(ends(&shown, shown[shown.len() - 1])),
-        caption: "While grains are poured: a heap that keeps its shape falls on one curve (Müller 2001, section 3.5).".to_owned(),
+        caption: "While grains are poured: a heap that keeps its shape falls on one curve (Müller 2001, figs. 3.24–3.32).".to_owned(),
         ..Plot::default()
     })
 }
@@ -143,8 +143,9 @@ impl Surface {
 /// The part that hangs together around `apex`: single grains that rolled away do not belong to the heap.
 fn body(points: &[[f64; 2]], apex: f64) -> &[[f64; 2]] {
     let centre = points.partition_point(|p| p[0] < apex).min(points.len().saturating_sub(1));
-    let first = points[..centre].iter().rposition(|p| !(p[1] > 0.0)).map_or(0, |gap| gap + 1);
-    let after = points[centre..].iter().position(|p| !(p[1] > 0.0)).map_or(points.len(), |gap| centre + gap);
+    let stands = |point: &[f64; 2]| point[1] > 0.0;
+    let first = points[..centre].iter().rposition(|p| !stands(p)).map_or(0, |gap| gap + 1);
+    let after = points[centre..].iter().position(|p| !stands(p)).map_or(points.len(), |gap| centre + gap);
     &points[first..after.max(first)]
 }
 

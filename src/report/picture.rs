@@ -29,7 +29,8 @@ pub fn grains_png(frame: &Frame, walls: Option<&Walls>, diameter: f64, width: u3
 struct Projection<'a> {
     scene: &'a Scene,
     scale: f64,
-    height: f64,
+    /// Width and height of the picture [pixel].
+    size: [f64; 2],
 }
 
 impl Projection<'_> {
@@ -46,7 +47,7 @@ impl Projection<'_> {
 
     fn pixel(&self, position: [f64; 3]) -> [f64; 2] {
         let [across, up] = self.flat(position);
-        [FRAME + across * self.scale, self.height - FRAME - up * self.scale]
+        [FRAME + across * self.scale, self.size[1] - FRAME - up * self.scale]
     }
 }
 
@@ -55,7 +56,7 @@ pub(super) fn picture(frame: &Frame, scene: &Scene, fastest: f64, diameter: f64,
     let inner = (width - 2.0 * FRAME).max(8.0);
     let height = (inner / scene.aspect()).clamp(4.0, 4.0 * width) + 2.0 * FRAME;
     let across = if scene.is_turned { scene.span(1) } else { scene.span(0) };
-    let projection = Projection { scene, scale: inner / across, height: height.round() };
+    let projection = Projection { scene, scale: inner / across, size: [width, height.round()] };
     let mut raster = Raster::new(width as usize, height.round() as usize, PAPER);
     let radius = (0.5 * diameter * projection.scale).max(LEAST_RADIUS);
     for index in drawing_order(frame, scene.is_deep) {
@@ -109,20 +110,14 @@ fn paint_sides(raster: &mut Raster, projection: &Projection<'_>) {
                 "periodic" => (PERIODIC, 1.0),
                 _ => (WALL, 3.0),
             };
-            let mut ends = [[0.0; 3]; 2];
-            for a in 0..3 {
-                let fixed = scene.window[a][side];
-                let both = if a == axis { [fixed, fixed] } else { scene.window[a] };
-                (ends[0][a], ends[1][a]) = (both[0], both[1]);
-            }
-            let [first, second] = ends.map(|end| projection.pixel(end));
+            let mut corners = [scene.window.map(|ends| ends[0]), scene.window.map(|ends| ends[1])];
+            corners.iter_mut().for_each(|corner| corner[axis] = scene.window[axis][side]);
+            let [first, second] = corners.map(|corner| projection.pixel(corner));
             let mut from = [first[0].min(second[0]), first[1].min(second[1])];
             let mut to = [first[0].max(second[0]), first[1].max(second[1])];
             // The line lies outside of the space of the grains.
-            let across = usize::from(from[1] == to[1]);
-            let middle = 0.5 * (if across == 1 { projection.height } else { 2.0 * FRAME + to[0].max(0.0) });
-            let is_first = if across == 1 { from[1] < middle } else { from[0] < 2.0 * FRAME };
-            if is_first {
+            let across = usize::from(axis != 0) ^ usize::from(scene.is_turned);
+            if from[across] < 0.5 * projection.size[across] {
                 from[across] -= thickness;
             } else {
                 to[across] += thickness;

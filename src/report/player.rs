@@ -6,6 +6,7 @@ use serde_json::json;
 
 use super::colour::ColourMap;
 use super::escape::{escape, escape_json};
+use super::number::number;
 use super::scene::{Scene, speed};
 use super::setup::Setup;
 use crate::record::contents::Frame;
@@ -32,11 +33,11 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
     if most == 0 {
         return String::new();
     }
-    let one_in = most.div_ceil(MOST_POINTS);
+    let share = share_shown(most);
     let packed: Vec<Packed> = frames
         .iter()
         .zip(&scene.speeds)
-        .map(|(frame, fastest)| Packed::of(frame, scene, *fastest, one_in))
+        .map(|(frame, fastest)| Packed::of(frame, scene, *fastest, share))
         .collect();
     let mut bytes = Vec::new();
     // All positions first: two-byte numbers must begin at even places.
@@ -64,7 +65,7 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
         aspect = aspect.clamp(0.4, 14.0),
         last = frames.len() - 1,
         gradient = ColourMap::Speed.gradient(),
-        caption = escape(&format!("{}{hint}", caption(frames, one_in, scene))),
+        caption = escape(&format!("{}{hint}", caption(frames, share, scene))),
         parameters = escape_json(&parameters.to_string()),
         data = STANDARD.encode(bytes),
         script = SCRIPT,
@@ -72,12 +73,12 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
 }
 
 /// What the player leaves out, and how it colours.
-fn caption(frames: &[&Frame], one_in: usize, scene: &Scene) -> String {
+fn caption(frames: &[&Frame], share: f64, scene: &Scene) -> String {
     let thinned = frames.iter().any(|f| f.grains > f.positions.len() as u64);
-    let shown = match (one_in, thinned) {
-        (1, false) => "Every grain is shown".to_owned(),
-        (1, true) => "Part of the grains is shown".to_owned(),
-        (n, _) => format!("One in {n} of the recorded grains is shown"),
+    let shown = match thinned {
+        _ if share < 1.0 => format!("{} % of the recorded grains are shown", number(100.0 * share, 2)),
+        true => "Part of the grains is shown".to_owned(),
+        false => "Every grain is shown".to_owned(),
     };
     let is_shared = scene.speeds.windows(2).all(|pair| pair[0] == pair[1]);
     let colours = if is_shared {
@@ -95,10 +96,10 @@ struct Packed {
 }
 
 impl Packed {
-    fn of(frame: &Frame, scene: &Scene, fastest: f64, one_in: usize) -> Self {
+    fn of(frame: &Frame, scene: &Scene, fastest: f64, share: f64) -> Self {
         let mut packed = Self { places: Vec::new(), speeds: Vec::new() };
         let axes = if scene.is_deep { 3 } else { 2 };
-        for index in chosen_grains(frame, one_in) {
+        for index in chosen_grains(frame, share) {
             for axis in 0..axes {
                 let [lower, upper] = scene.window[axis];
                 let share = (f64::from(frame.positions[index][axis]) - lower) / (upper - lower);
@@ -111,13 +112,18 @@ impl Packed {
     }
 }
 
+/// The share of grains to show when there are `most` in a frame, with room for the luck of the draw.
+fn share_shown(most: usize) -> f64 {
+    if most <= MOST_POINTS { 1.0 } else { 0.96 * MOST_POINTS as f64 / most as f64 }
+}
+
 /// The same grains in every frame as far as they have identities, never more than the page can hold.
-fn chosen_grains(frame: &Frame, one_in: usize) -> Vec<usize> {
-    let is_chosen = |index: &usize| match frame.ids.get(*index) {
-        // A grain's number says where it started, so neighbours are told apart by mixing its bits.
-        Some(id) => (id.wrapping_mul(0x9e37_79b1) >> 8) as usize % one_in == 0,
-        None => index % one_in == 0,
-    };
+fn chosen_grains(frame: &Frame, share: f64) -> Vec<usize> {
+    let threshold = (share * 4_294_967_296.0) as u64;
+    // A grain's number says where it started, so neighbours are told apart by mixing its bits.
+    let mixed = |id: u32| u64::from((id ^ (id >> 15)).wrapping_mul(0x9e37_79b1));
+    let is_chosen =
+        |index: &usize| mixed(frame.ids.get(*index).copied().unwrap_or(*index as u32)) < threshold;
     let chosen: Vec<usize> = (0..frame.positions.len()).filter(is_chosen).collect();
     let surplus = chosen.len().div_ceil(MOST_POINTS).max(1);
     chosen.into_iter().step_by(surplus).collect()
@@ -150,8 +156,8 @@ mod tests {
     #[test]
     fn grains_are_thinned_to_what_a_page_holds() {
         for count in [4999, 5001, 20_000, 100_000] {
-            let kept = chosen_grains(&frame(count), count.div_ceil(MOST_POINTS)).len();
-            assert!((3500..=MOST_POINTS).contains(&kept) || kept == count, "{count}: {kept}");
+            let kept = chosen_grains(&frame(count), share_shown(count)).len();
+            assert!((4500..=MOST_POINTS).contains(&kept) || kept == count, "{count}: {kept}");
         }
     }
 

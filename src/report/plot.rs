@@ -282,7 +282,11 @@ fn colour(ink: Ink) -> String {
         Ink::Series(index) => format!("var(--series-{})", index % 6),
         Ink::Text => "var(--theory)".to_owned(),
         // The yellow end would be lost on paper.
-        Ink::Ordered(share) => ColourMap::Field.hexadecimal(0.92 * share),
+        Ink::Ordered(share) => {
+            let colour = ColourMap::Field.hexadecimal(0.92 * share);
+            // Lifted where the page is dark.
+            format!("color-mix(in srgb, {colour} var(--keep), white)")
+        }
     }
 }
 
@@ -291,7 +295,7 @@ fn write_curve(html: &mut String, curve: &Curve, frame: &Frame) {
     write_errors(html, curve, frame, &colour);
     let points = outline(&curve.points);
     if curve.stroke == Stroke::Dots {
-        let _ = writeln!(html, "<g fill=\"{colour}\" style=\"fill:{colour}\">");
+        let _ = writeln!(html, "<g style=\"fill:{colour}\">");
         for [x, y] in points.iter().filter_map(|p| frame.place(*p)) {
             let _ = write!(html, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\"/>");
         }
@@ -363,7 +367,9 @@ mod tests {
         Plot {
             title: "<b>".to_owned(),
             y_label: "a & b".to_owned(),
-            curves: vec![Curve::new("x < y", points, Stroke::Line, Ink::Series(0))],
+            curves: ["x < y", "z"]
+                .map(|name| Curve::new(name, points.clone(), Stroke::Line, Ink::Series(0)))
+                .to_vec(),
             ..Plot::default()
         }
     }

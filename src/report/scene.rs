@@ -39,10 +39,8 @@ impl Scene {
             }
         }
         for ends in &mut window {
-            if !(ends[1] > ends[0]) {
-                *ends = [ends[0].min(0.0), ends[0].min(0.0) + diameter];
-            }
-            if ends.iter().any(|e| !e.is_finite()) {
+            let is_range = ends[0].is_finite() && ends[1].is_finite() && ends[0] < ends[1];
+            if !is_range {
                 *ends = [0.0, diameter];
             }
         }

@@ -33,7 +33,7 @@ fn space_time(evidence: &Evidence<'_>, densities: &[&Profile]) -> Option<Plot> {
     let positions = values(last, "position", 0);
     let columns = densities.len().min(MOST_TIMES);
     let duration = last.time - first.time;
-    if !(duration > 0.0) || positions.len() < 2 {
+    if duration <= 0.0 || !duration.is_finite() || positions.len() < 2 {
         return None;
     }
     // Recordings need not be even in time: each column shows the nearest one.

@@ -56,8 +56,8 @@ fn summary(pairs: Value) -> Map<String, Value> {
         "peak_memory_bytes": 31_000_000, "momentum_drift": null,
         "state_hash": "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
     });
-    let all = all.as_object_mut().unwrap();
-    all.extend(pairs.as_object().unwrap().clone());
+    let all = all.as_object_mut().expect("an object");
+    all.extend(pairs.as_object().expect("an object").clone());
     std::mem::take(all)
 }
 
