@@ -74,7 +74,8 @@ fn fall<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
     let (gravity, boundary, Some(_)) = (story.gravity?, story.boundary?, story.source?) else {
         return Some(());
     };
-    for axis in (0..V::DIMENSION).filter(|&axis| gravity[axis] != 0.0 && boundary.is_periodic(axis)) {
+    let mut axes = 0..V::DIMENSION;
+    if let Some(axis) = axes.find(|&axis| gravity[axis] != 0.0 && boundary.is_periodic(axis)) {
         let name = V::AXIS_NAMES[axis];
         root.mistake(
             &format!("boundary.{name}"),

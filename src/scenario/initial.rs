@@ -59,7 +59,7 @@ pub fn build<V: Vector>(scenario: &Scenario<V>, saved: Option<Columns<V>>) -> Re
 ///
 /// A single grain keeps its direction: without momentum it would have no temperature.
 /// Grains at rest stay at rest.
-pub fn rescale<V: Vector>(velocities: &mut [V], mass: f64, temperature: f64) {
+pub fn set_temperature<V: Vector>(velocities: &mut [V], mass: f64, temperature: f64) {
     let number = velocities.len() as f64;
     if velocities.len() > 1 {
         let mean =
@@ -78,10 +78,10 @@ pub fn rescale<V: Vector>(velocities: &mut [V], mass: f64, temperature: f64) {
     }
 }
 
-/// Brings `gas` to rest as a whole and to `temperature` [mass·length²/time²]: see [`rescale`].
-pub fn rescale_gas<V: Vector>(gas: &mut Gas<V>, temperature: f64) {
+/// Brings `gas` to rest as a whole and to `temperature` [mass·length²/time²]: see [`set_temperature`].
+pub fn rescale<V: Vector>(gas: &mut Gas<V>, temperature: f64) {
     let mass = gas.grain.mass;
-    rescale(gas.velocities_mut(), mass, temperature);
+    set_temperature(gas.velocities_mut(), mass, temperature);
 }
 
 /// The temperature that a scenario states: T, m w²/3 for uniform velocities, 0 at rest.
@@ -108,7 +108,7 @@ fn velocities<V: Vector>(scenario: &Scenario<V>) -> Vec<V> {
         InitialVelocities::Uniform(_) => draw(Stream::symmetric),
         InitialVelocities::Rest => return vec![V::ZERO; scenario.count as usize],
     };
-    rescale(&mut velocities, scenario.grain.mass, stated_temperature(scenario));
+    set_temperature(&mut velocities, scenario.grain.mass, stated_temperature(scenario));
     velocities
 }
 

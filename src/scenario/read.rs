@@ -12,9 +12,7 @@ use super::tables::particles::{self, ParticlesTable};
 use super::tables::source::Surroundings;
 use super::tables::{boundary, engine, head, initial, record, run, source};
 use super::walls;
-use crate::law::boundary::Boundary;
 use crate::law::restitution::RestitutionLaw;
-use crate::law::source::Source;
 use crate::matter::grain::Grain;
 use crate::space::Vector;
 
@@ -49,17 +47,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     };
     let consistent = consistency::check(root, &story);
     let initial = resolve_initial(root, initial, &story);
-    let boundary = boundary?;
-    let sound =
-        size.map(|size| walls::check_strokes(root, &boundary, size)).is_some_and(|sound| sound.is_some());
-    let sound = sound && consistency::fits(&story);
-    let grid = match (sound, size, particles.grain, count, &source) {
-        (true, Some(size), Some(grain), Some(count), Some(source)) => {
-            let question = GridQuestion { engine: &engine, boundary: &boundary, size, grain, count };
-            question.answer(root, source.as_ref(), head.gravity, &particles)
-        }
-        _ => None,
-    };
+    let grid = cut(root, &engine, &particles, &story);
     let (grid_origin, grid_size, cells) = grid?;
     consistent?;
     Some(Scenario {
@@ -73,7 +61,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         grid_origin,
         grid_size,
         cells,
-        boundary,
+        boundary: boundary?,
         grain: particles.grain?,
         restitution: restitution?,
         count: count?,
@@ -100,49 +88,43 @@ fn volume_fraction<V: Vector>(count: Option<u32>, grain: Option<Grain>, size: Op
     Some(f64::from(count?) * grain?.volume::<V>() / size?.product())
 }
 
-struct GridQuestion<'a, V> {
-    engine: &'a EngineTable,
-    boundary: &'a Boundary<V>,
-    size: V,
-    grain: Grain,
-    count: u32,
-}
-
-impl<V: Vector> GridQuestion<'_, V> {
-    /// Origin, size and cells of the grid.
-    fn answer(
-        &self,
-        root: &Section<'_>,
-        source: Option<&Source<V>>,
-        gravity: Option<V>,
-        particles: &ParticlesTable,
-    ) -> Option<(V, V, [u32; 3])> {
-        let hsmc = self.engine.kind? == EngineKind::Hsmc;
-        let maximum = self.engine.hsmc.maximum_volume_fraction;
-        let (grid_origin, grid_size) = walls::swept_box(self.boundary, self.size);
-        let plan = CellPlan {
-            wish: self.engine.cell_size?,
-            grid_origin,
-            grid_size,
-            size: self.size,
-            periodic: std::array::from_fn(|axis| self.boundary.is_periodic(axis)),
-            grain: self.grain,
-            count: self.count,
-            final_count: u64::from(self.count) + source.map_or(0, |source| u64::from(source.count)),
-            maximum_volume_fraction: if hsmc { Some(maximum?) } else { None },
-            settling: source.is_some() || gravity? != V::ZERO,
-        };
-        match plan.cells() {
-            Ok(cells) => Some((grid_origin, grid_size, cells)),
-            Err(Refusal::CellSize(message)) => {
-                root.mistake("engine.cell_size", message);
-                None
-            }
-            Err(Refusal::Count(message)) => {
-                let key = particles.amount.map_or("count", particles::Amount::key);
-                root.mistake(&format!("particles.{key}"), message);
-                None
-            }
+/// Origin, size and cells of the grid.
+fn cut<V: Vector>(
+    root: &Section<'_>,
+    engine: &EngineTable,
+    particles: &ParticlesTable,
+    story: &Story<'_, V>,
+) -> Option<(V, V, [u32; 3])> {
+    let (size, boundary, count, source) = (story.size?, story.boundary?, story.count?, story.source?);
+    walls::check_strokes(root, boundary, size)?;
+    if !consistency::fits(story) {
+        return None;
+    }
+    let hsmc = engine.kind? == EngineKind::Hsmc;
+    let maximum = engine.hsmc.maximum_volume_fraction;
+    let (grid_origin, grid_size) = walls::swept_box(boundary, size);
+    let plan = CellPlan {
+        wish: engine.cell_size?,
+        grid_origin,
+        grid_size,
+        size,
+        periodic: std::array::from_fn(|axis| boundary.is_periodic(axis)),
+        grain: particles.grain?,
+        count,
+        final_count: u64::from(count) + source.map_or(0, |source| u64::from(source.count)),
+        maximum_volume_fraction: if hsmc { Some(maximum?) } else { None },
+        settling: source.is_some() || story.gravity? != V::ZERO,
+    };
+    match plan.cells() {
+        Ok(cells) => Some((grid_origin, grid_size, cells)),
+        Err(Refusal::CellSize(message)) => {
+            root.mistake("engine.cell_size", message);
+            None
+        }
+        Err(Refusal::Count(message)) => {
+            let key = particles.amount.map_or("count", particles::Amount::key);
+            root.mistake(&format!("particles.{key}"), message);
+            None
         }
     }
 }
