@@ -94,7 +94,8 @@ fn write_sample(path: &Path) -> RunLog {
         let time = 0.1 * index as f64;
         let row = vec![time, 100.0 - time, 2.0 * time];
         let hash = format!("{index:064x}");
-        let picture = frame(time, &grains(300, time), Some(250));
+        // The first recording is of an empty box, as where grains are poured in.
+        let picture = frame(time, &grains(if index == 0 { 0 } else { 300 }, time), Some(250));
         let profiles = [profile("velocity-profile", time)];
         let recording = Recording { values: &row, state_hash: &hash, profiles: &profiles, frame: &picture };
         log.recording(&recording).unwrap();
