@@ -12,6 +12,7 @@ use grainflow::record::contents::{Frame, RunLog, Walls};
 use grainflow::record::error::LogError;
 use grainflow::record::frame::frame;
 use grainflow::record::reader::{last_state, read_log, read_states};
+use grainflow::record::recover::recover;
 use grainflow::record::state::SavedState;
 use grainflow::record::time_scale::time_scale;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
@@ -93,7 +94,8 @@ fn write_sample(path: &Path) -> RunLog {
         let time = 0.1 * index as f64;
         let row = vec![time, 100.0 - time, 2.0 * time];
         let hash = format!("{index:064x}");
-        let picture = frame(time, &grains(300, time), Some(250));
+        // The first recording is of an empty box, as where grains are poured in.
+        let picture = frame(time, &grains(if index == 0 { 0 } else { 300 }, time), Some(250));
         let profiles = [profile("velocity-profile", time)];
         let recording = Recording { values: &row, state_hash: &hash, profiles: &profiles, frame: &picture };
         log.recording(&recording).unwrap();
@@ -219,6 +221,39 @@ fn one_wrong_bit_is_found() {
             assert!(log.cut_off.is_some(), "bit {} of byte {place} of {}", turn % 8, bytes.len());
         }
     }
+}
+
+#[test]
+fn what_is_sound_in_a_damaged_log_is_recovered() {
+    let (folder, path, expected) = sample();
+    let bytes = std::fs::read(&path).unwrap();
+    let spoiled = folder.path().join("spoiled.mcap");
+    let clean = folder.path().join("clean.mcap");
+    let mut lost = 0;
+    for place in (700..bytes.len()).step_by(997) {
+        let mut wrong = bytes.clone();
+        wrong[place] ^= 1;
+        std::fs::write(&spoiled, &wrong).unwrap();
+        let Ok(recovery) = recover(&spoiled, &clean) else {
+            continue;
+        };
+        let log = read_log(&clean).unwrap();
+        assert_eq!(
+            (&log.columns, &log.scenario, &log.cut_off),
+            (&expected.columns, &expected.scenario, &None)
+        );
+        assert!(log.metadata.contains_key("recovered"));
+        assert!(log.series.iter().all(|row| expected.series.contains(row)), "byte {place}");
+        assert!(log.frames.iter().all(|frame| expected.frames.contains(frame)), "byte {place}");
+        assert!(log.series.len() + 1 >= RECORDINGS || recovery.cut_off, "byte {place}: {recovery:?}");
+        let states = read_states::<DVec2>(&clean).unwrap();
+        assert!(states.iter().all(|found| [state(300, 0.2), state(300, 0.5)].contains(found)));
+        lost += u64::from(recovery.damaged_chunks > 0);
+    }
+    assert!(lost > 20, "{lost} damaged chunks");
+    std::fs::write(&spoiled, &bytes[..bytes.len() * 2 / 3]).unwrap();
+    assert!(recover(&spoiled, &clean).unwrap().cut_off);
+    assert!(read_log(&clean).unwrap().series.len() >= 3);
 }
 
 #[test]

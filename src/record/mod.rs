@@ -9,6 +9,7 @@ pub mod contents;
 pub mod error;
 pub mod frame;
 pub mod reader;
+pub mod recover;
 mod saved;
 mod scan;
 mod schema;

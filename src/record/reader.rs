@@ -64,8 +64,8 @@ struct Contents {
     log: RunLog,
     /// Numbers of the fields of the columns.
     numbers: Vec<u32>,
-    /// Grains in the gas at every recording.
-    grains: Vec<u64>,
+    /// Place in the sequence and grains in the gas of every recording.
+    recordings: Vec<(u32, u64)>,
 }
 
 impl Contents {
@@ -79,7 +79,7 @@ impl Contents {
                 (self.numbers, self.log.columns) = columns.into_iter().unzip();
             }
             Event::Message { topic, sequence, data } => match topic {
-                topic::MEASURES => self.measures(data)?,
+                topic::MEASURES => self.measures(sequence, data)?,
                 topic::PARTICLES => self.frame(sequence, data)?,
                 topic::PROFILES => self.log.profiles.push(profile(data)?),
                 topic::WALLS => {
@@ -92,26 +92,25 @@ impl Contents {
         Ok(())
     }
 
-    fn measures(&mut self, data: &[u8]) -> Result<(), Fault> {
+    fn measures(&mut self, sequence: u32, data: &[u8]) -> Result<(), Fault> {
         let message = MeasuresMessage::decode(data, &self.numbers).map_err(Fault::damage)?;
         self.log.series.push(message.values);
         self.log.state_hashes.push(message.state_hash);
-        self.grains.push(message.grains);
+        self.recordings.push((sequence, message.grains));
         Ok(())
     }
 
-    /// A frame belongs to the recording of the same place in the sequence.
+    /// A frame belongs to the recording of the same place in the sequence; one whose recording
+    /// was lost to damage is passed over.
     fn frame(&mut self, sequence: u32, data: &[u8]) -> Result<(), Fault> {
-        let recording = sequence as usize;
-        let time = self.log.series.get(recording).and_then(|row| row.first());
-        let (Some(&time), Some(&grains)) = (time, self.grains.get(recording)) else {
-            return Err(Fault::damage("a frame lacks its recording"));
+        let Ok(recording) = self.recordings.binary_search_by_key(&sequence, |&(place, _)| place) else {
+            return Ok(());
         };
         let cloud = PointCloud::decode(data).map_err(Fault::damage)?;
         let mut frame =
             frame_of(&cloud).ok_or_else(|| Fault::damage("a frame lacks a field or part of a point"))?;
-        frame.time = time;
-        frame.grains = grains;
+        frame.time = self.log.series[recording][0];
+        frame.grains = self.recordings[recording].1;
         self.log.frames.push(frame);
         Ok(())
     }

@@ -55,7 +55,8 @@ impl<V: Vector> Default for Assembly<V> {
 }
 
 impl<V: Vector> Assembly<V> {
-    /// Takes one part; gives the state when it was the last one. What is wrong with it, otherwise.
+    /// Takes one part; gives the state when it was the last one. A state of which a part was lost to
+    /// damage is passed over.
     pub(crate) fn add(&mut self, part: &State) -> Result<Option<SavedState<V>>, &'static str> {
         if part.dimension as usize != V::DIMENSION {
             return Err("a state has another dimension");
@@ -63,10 +64,13 @@ impl<V: Vector> Assembly<V> {
         if part.first_row == 0 {
             self.unfinished = Some((sums_of(part).ok_or("a state lacks a field")?, part.grains));
         }
-        let (state, grains) = self.unfinished.as_mut().ok_or("a state lacks its first part")?;
-        if part.first_row != state.columns.len() as u64 || part.grains != *grains {
-            return Err("a state lacks a part");
-        }
+        let follows = |(state, grains): &(SavedState<V>, u64)| {
+            part.first_row == state.columns.len() as u64 && part.grains == *grains
+        };
+        let Some((state, grains)) = self.unfinished.as_mut().filter(|unfinished| follows(unfinished)) else {
+            self.unfinished = None;
+            return Ok(None);
+        };
         append(&mut state.columns, part).ok_or("the columns of a state do not fit together")?;
         if (state.columns.len() as u64) < *grains {
             return Ok(None);

@@ -13,7 +13,7 @@ use super::error::LogError;
 use super::schema;
 
 /// Bytes read at a time.
-const BLOCK: usize = 1 << 18;
+pub(crate) const BLOCK: usize = 1 << 18;
 /// A record may always be this long; a longer one has to be plausible for the length of the file.
 const USUAL_LIMIT: u64 = 1 << 28;
 
@@ -103,7 +103,7 @@ impl From<McapError> for Fault {
     }
 }
 
-fn check_magic(path: &Path, file: &mut File, length: u64) -> Result<(), LogError> {
+pub(crate) fn check_magic(path: &Path, file: &mut File, length: u64) -> Result<(), LogError> {
     let unreadable = |source| LogError::Read { path: path.to_owned(), source };
     if length == 0 {
         return Err(LogError::Empty { path: path.to_owned() });
@@ -116,16 +116,20 @@ fn check_magic(path: &Path, file: &mut File, length: u64) -> Result<(), LogError
     file.rewind().map_err(unreadable)
 }
 
+/// How long a record may be in a file of `file_length` bytes.
+pub(crate) fn length_limit(file_length: u64) -> usize {
+    usize::try_from(file_length.saturating_mul(8).max(USUAL_LIMIT)).unwrap_or(usize::MAX)
+}
+
 /// Every checksum is checked, and those of a chunk before anything in it is believed.
 fn options(file_length: u64) -> LinearReaderOptions {
-    let limit = file_length.saturating_mul(8).max(USUAL_LIMIT);
     LinearReaderOptions::default()
         .with_validate_chunk_crcs(true)
         .with_prevalidate_chunk_crcs(true)
         .with_validate_data_section_crc(true)
         .with_validate_summary_section_crc(true)
         .with_check_finishes_after_end_magic(true)
-        .with_record_length_limit(usize::try_from(limit).unwrap_or(usize::MAX))
+        .with_record_length_limit(length_limit(file_length))
 }
 
 /// What has been seen so far.
@@ -222,7 +226,7 @@ fn check_format(metadata: &BTreeMap<String, String>) -> Result<(), Fault> {
 
 /// Whether `body` is long enough for the attachment that it says it is: times, two strings, data
 /// and checksum.
-fn holds_attachment(body: &[u8]) -> bool {
+pub(crate) fn holds_attachment(body: &[u8]) -> bool {
     let string_end = |start: usize| {
         let word = body.get(start..start.checked_add(4)?)?;
         let length = u32::from_le_bytes(word.try_into().ok()?);

@@ -217,7 +217,7 @@ impl Channel {
 
 /// The same bytes on every machine: one compression thread, no seeking back; a chunk that is not
 /// complete never reaches the file.
-fn options() -> WriteOptions {
+pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .compression(Some(Compression::Zstd))
         .compression_level(1)
