@@ -70,13 +70,23 @@ fn parseval_counts_the_variance_once() {
 }
 
 #[test]
+fn a_power_law_gives_its_exponent() {
+    let spectrum = Spectrum::new(&pipe().scenario).unwrap();
+    let frequencies: Vec<f64> = (1..1500).map(|k| f64::from(k) / 300.0).collect();
+    // Outside the range, 0.15 … 2.5 per time here, the power does not matter.
+    let power: Vec<f64> =
+        frequencies.iter().map(|&f| if (0.15..2.5).contains(&f) { f.powf(-1.3) } else { 1.0 }).collect();
+    let slope = spectrum.slope(&frequencies, &power).unwrap();
+    assert!((slope.value + 1.3).abs() < 1e-12 && slope.standard_error.unwrap() < 1e-12, "{slope:?}");
+}
+
+#[test]
 fn white_noise_is_flat() {
     let spectrum = of_series(8000, |slice| {
         let mut random = stream(slice);
         (0..8000).map(|_| random.below(1000) as u32).collect()
     });
     let slope = slope_of(&spectrum);
-    eprintln!("WHITE {slope:?}");
     assert!(slope.value.abs() < 4.0 * slope.standard_error.unwrap(), "{slope:?}");
     assert!(slope.standard_error.unwrap() < 0.02, "{slope:?}");
 }
@@ -101,7 +111,6 @@ fn a_random_walk_falls_with_the_square() {
     let slope = slope_of(&spectrum);
     assert!((expected + 2.0).abs() < 0.06, "{expected}");
     // The lowest bin holds 12 frequencies of 80 segments: log P scatters by 1/√960 = 0.03 there, the slope by less than 0.01.
-    eprintln!("WALK {slope:?} {expected}");
     assert!((slope.value - expected).abs() < 0.03, "{slope:?} {expected}");
 }
 
