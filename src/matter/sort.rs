@@ -50,8 +50,8 @@ impl CountingSort {
     /// Turns counts into starting places: by cell, and inside a cell by part.
     fn accumulate(&mut self, offsets: &mut [u32], number_of_cells: usize) -> usize {
         let mut place = 0;
-        for cell in 0..number_of_cells {
-            offsets[cell] = place;
+        for (cell, offset) in offsets[..number_of_cells].iter_mut().enumerate() {
+            *offset = place;
             for cursor in self.cursors[cell..].iter_mut().step_by(number_of_cells) {
                 place += std::mem::replace(cursor, place);
             }

@@ -32,7 +32,8 @@ pub(super) fn summary<V: Vector>(
     summary.append(&mut what_happened(simulation, ending));
     summary.append(&mut what_it_cost(simulation, watch));
     summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
-    for figure in figures {
+    let fixed: Vec<String> = summary.keys().cloned().collect();
+    for figure in figures.iter().filter(|figure| !fixed.contains(&figure.name)) {
         let error = format!("{}_standard_error", figure.name);
         summary.insert(figure.name.clone(), json!(figure.value.filter(|value| value.is_finite())));
         summary.insert(error, json!(figure.standard_error.filter(|value| value.is_finite())));

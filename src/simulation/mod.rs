@@ -13,7 +13,7 @@ use crate::observe::measure::{Cadence, Measure, Snapshot};
 use crate::observe::{measures, moments};
 use crate::random::{Phase, Streams};
 use crate::record::state::{Beginning, SavedState};
-use crate::scenario::initial::{rescale_gas, stated_temperature};
+use crate::scenario::initial::{rescale, stated_temperature};
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use limits::{EndReason, Limits};
@@ -209,7 +209,7 @@ fn equilibrate<V: Vector>(
         let report = engine.step(gas, laps)?;
         totals.add(&report, gas.len());
     }
-    rescale_gas(gas, stated_temperature(scenario));
+    rescale(gas, stated_temperature(scenario));
     gas.clock = Default::default();
     Ok(())
 }
