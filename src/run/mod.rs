@@ -97,18 +97,22 @@ pub struct Outcome {
     pub laps: Vec<(&'static str, f64)>,
 }
 
+/// Hears of every step.
+pub type Listener<'a> = &'a mut (dyn FnMut(&Status) + Send);
+
 /// Runs `scenario` into `folder` until its end, or until `stop` turns true. `tell` hears of every step.
 pub fn run(
     scenario: &AnyScenario,
     folder: &Path,
     force: bool,
     stop: &AtomicBool,
-    tell: &mut dyn FnMut(&Status),
+    tell: Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    match scenario {
+    // On a thread of the pool, parallel calls need not wake anybody to begin.
+    rayon::scope(|_| match scenario {
         AnyScenario::Two(scenario) => run_in(scenario, folder, force, stop, tell),
         AnyScenario::Three(scenario) => run_in(scenario, folder, force, stop, tell),
-    }
+    })
 }
 
 fn run_in<V: Vector>(
@@ -116,7 +120,7 @@ fn run_in<V: Vector>(
     folder: &Path,
     force: bool,
     stop: &AtomicBool,
-    tell: &mut dyn FnMut(&Status),
+    tell: Listener<'_>,
 ) -> Result<Outcome, RunError> {
     let mut watch = Stopwatch::default();
     let gas = initial_gas(scenario)?;
@@ -156,7 +160,7 @@ fn go_on<V: Vector>(
     recorder: &mut Recorder,
     watch: &mut Stopwatch,
     stop: &AtomicBool,
-    tell: &mut dyn FnMut(&Status),
+    tell: Listener<'_>,
 ) -> Result<Ending, StepError> {
     use crate::engine::Laps;
     loop {

@@ -26,6 +26,8 @@ pub(crate) struct Moves {
     departures: Vec<AtomicU32>,
     /// `[cell]`: movers that come.
     arrivals: Vec<AtomicU32>,
+    /// Cells that would overflow if nobody left them; a cell may stand here several times.
+    pub(crate) crowded: Vec<u32>,
     /// Arrivals at cells that may become too full, by cell and rank.
     bids: Vec<Bid>,
     /// Rows whose move is rejected.
@@ -61,13 +63,17 @@ impl Moves {
             });
     }
 
-    /// Notes that a grain wants to go from `source` to another cell, or out.
+    /// Notes that a grain wants to go from `source` to another cell, or out. Returns the grains that
+    /// the target would hold if nobody left it: the last arrival at a cell sees them all, so the
+    /// cells found crowded do not depend on the order of arrivals.
     #[inline(always)]
-    pub(crate) fn announce(&self, source: u32, target: u32) {
+    pub(crate) fn announce(&self, source: u32, target: u32) -> u32 {
         self.departures[source as usize].fetch_add(1, Relaxed);
-        if target != REMOVED {
-            self.arrivals[target as usize].fetch_add(1, Relaxed);
+        if target == REMOVED {
+            return 0;
         }
+        let before = self.arrivals[target as usize].fetch_add(1, Relaxed);
+        self.occupancy[target as usize].load(Relaxed) + before + 1
     }
 
     /// Decides which of the moves to `targets` `[row]` are rejected; their rows, in rising order.
@@ -101,12 +107,8 @@ impl Moves {
 
     /// The strict rule: the least set of rejections that leaves no cell above its capacity.
     fn reject_surplus(&mut self, capacity: u32, targets: &[u32], ids: &[u32], ranks: PhaseStreams) {
-        let cells = self.occupancy.len() as u32;
-        let mut queue: Vec<u32> = (0..cells)
-            .into_par_iter()
-            .with_min_len(4096)
-            .filter(|&cell| self.after_moves(cell) > capacity && self.count(&self.arrivals, cell) > 0)
-            .collect();
+        let mut queue = self.crowded.clone();
+        queue.retain(|&cell| self.after_moves(cell) > capacity);
         if queue.is_empty() {
             return;
         }
@@ -229,7 +231,7 @@ mod tests {
     }
 
     /// Grains sorted by source cell on a line of `cells`, and where they want to go.
-    fn moves(cells: usize, sources: &[u32], targets: &[u32]) -> Moves {
+    fn moves(cells: usize, capacity: u32, sources: &[u32], targets: &[u32]) -> Moves {
         let mut offsets = vec![0; cells + 1];
         for &source in sources {
             offsets[source as usize + 1] += 1;
@@ -241,8 +243,8 @@ mod tests {
         moves.begin(&offsets, sources.len());
         moves.sources.copy_from_slice(sources);
         for (&source, &target) in sources.iter().zip(targets) {
-            if source != target {
-                moves.announce(source, target);
+            if source != target && moves.announce(source, target) > capacity {
+                moves.crowded.push(target);
             }
         }
         moves
@@ -281,7 +283,7 @@ mod tests {
             plan.sort_by_key(|&(source, _)| source);
             let (sources, targets): (Vec<u32>, Vec<u32>) = plan.into_iter().unzip();
             let ids: Vec<u32> = (0..sources.len() as u32).collect();
-            let mut moves = moves(12, &sources, &targets);
+            let mut moves = moves(12, capacity, &sources, &targets);
             let rejected = moves.reject(Admission::Strict, capacity, &targets, &ids, ranks()).to_vec();
             prop_assert_eq!(&rejected, &by_sweeps(12, capacity, &sources, &targets));
             for cell in 0..12_u32 {
@@ -294,7 +296,7 @@ mod tests {
     #[test]
     fn a_swap_between_full_cells_is_admitted() {
         let (sources, targets) = ([0, 0, 1, 1], [1, 0, 0, 1]);
-        let mut moves = moves(2, &sources, &targets);
+        let mut moves = moves(2, 2, &sources, &targets);
         assert!(moves.reject(Admission::Strict, 2, &targets, &[0, 1, 2, 3], ranks()).is_empty());
     }
 }

@@ -25,7 +25,7 @@ pub(crate) struct Block<'a, V: Vector> {
     pub(crate) targets: &'a mut [u32],
 }
 
-/// Cuts all cells into blocks of a fixed number of cells.
+/// Cuts all cells into blocks of a fixed number of cells; blocks without grains are left out.
 pub(crate) fn blocks<'a, V: Vector>(
     offsets: &[u32],
     columns: &'a mut Columns<V>,
@@ -34,7 +34,9 @@ pub(crate) fn blocks<'a, V: Vector>(
     let cells = offsets.len() - 1;
     let starts = (0..cells).step_by(CELLS_PER_BLOCK);
     let spans = starts.map(|first| first as u32..(first + CELLS_PER_BLOCK).min(cells) as u32);
-    cut(spans, offsets, columns, targets)
+    let mut blocks = cut(spans, offsets, columns, targets);
+    blocks.retain(|block| !block.ids.is_empty());
+    blocks
 }
 
 /// Cuts the columns at the given contiguous spans of cells, the first of which starts at cell 0.

@@ -100,17 +100,21 @@ impl<V: Vector> CellCollisions<V> {
         for cell in self.active.drain(..) {
             self.choices[cell as usize] = NOBODY;
         }
-        if !gas.offsets().par_windows(2).any(|w| w[1] - w[0] >= capacity) {
+        let cells = gas.grid().number_of_cells();
+        let full = |cell: u32| gas.occupancy(cell) >= capacity;
+        let full_cells: Vec<u32> = occupied_spans(gas).flatten().filter(|&cell| full(cell)).collect();
+        if full_cells.is_empty() {
             return;
         }
-        let cells = gas.grid().number_of_cells() as u32;
-        let full = |cell: u32| gas.occupancy(cell) >= capacity;
-        self.active.par_extend((0..cells).into_par_iter().with_min_len(512).filter(|&cell| {
-            gas.occupancy(cell) > 0
-                && (full(cell) || neighbours(gas.grid(), cell).any(|(_, _, other)| full(other)))
-        }));
-        self.fields.resize(cells as usize, CellField::default());
-        self.choices.resize(cells as usize, NOBODY);
+        for &cell in &full_cells {
+            self.active.push(cell);
+            let beside = neighbours(gas.grid(), cell).map(|(_, _, other)| other);
+            self.active.extend(beside.filter(|&other| gas.occupancy(other) > 0 && !full(other)));
+        }
+        self.active.sort_unstable();
+        self.active.dedup();
+        self.fields.resize(cells, CellField::default());
+        self.choices.resize(cells, NOBODY);
     }
 
     fn measure(&mut self, gas: &Gas<V>) {
@@ -329,6 +333,16 @@ fn approach_speed<V: Vector>(
 ) -> f64 {
     let difference = fields[cell as usize].velocity[axis] - fields[other as usize].velocity[axis];
     if upwards { difference } else { -difference }
+}
+
+/// Spans of cells that are not all empty, in rising order.
+fn occupied_spans<V: Vector>(gas: &Gas<V>) -> impl Iterator<Item = std::ops::Range<u32>> + '_ {
+    const SPAN: usize = 64;
+    let cells = gas.grid().number_of_cells();
+    (0..cells).step_by(SPAN).filter_map(move |first| {
+        let last = (first + SPAN).min(cells);
+        (gas.offsets()[first] < gas.offsets()[last]).then_some(first as u32..last as u32)
+    })
 }
 
 fn is_white<V: Vector>(grid: &Grid<V>, cell: u32, parity: u32) -> bool {

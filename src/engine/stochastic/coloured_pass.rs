@@ -8,12 +8,11 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-use rayon::prelude::*;
-
 use super::blocks::{Block, cut};
 use super::cell_pairs::{Displaced, PairCollisions};
 use super::enskog::EnskogFactors;
 use super::laws::Room;
+use super::parallel;
 use super::rules::DisplacementRule;
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
@@ -42,23 +41,25 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
         let slabs = &axes[V::DIMENSION - 1];
         let stride = self.grid.stride(V::DIMENSION - 1);
         let cells_of_slabs = slabs.iter().map(|slab| slab.start * stride..slab.end * stride);
+        let grains = columns.len();
         let mut blocks = cut(cells_of_slabs, self.offsets, columns, cells);
-        blocks.par_iter_mut().for_each(|block| self.enter_home_cells(block));
+        parallel::map(grains, blocks.iter_mut().collect(), |block| self.enter_home_cells(block));
         let mut total = Tally::default();
         for colour in colours_in_order(V::DIMENSION, order) {
             let slab_parity = (colour >> (V::DIMENSION - 1)) as usize & 1;
-            let tallies: Vec<_> = blocks
-                .par_iter_mut()
-                .enumerate()
-                .filter(|(slab, _)| slab % 2 == slab_parity)
-                .map(|(slab, block)| self.slab(&axes, slab, colour, block))
-                .collect();
+            let slabs = blocks.iter_mut().enumerate();
+            let slabs = slabs.filter(|(slab, block)| slab % 2 == slab_parity && !block.ids.is_empty());
+            let tallies =
+                parallel::map(grains, slabs.collect(), |(slab, block)| self.slab(&axes, slab, colour, block));
             total.add(&Tally::total(tallies));
         }
         total
     }
 
     fn enter_home_cells(&self, block: &mut Block<'_, V>) {
+        if block.ids.is_empty() {
+            return;
+        }
         for cell in block.cells.clone() {
             let rows = block.rows(cell, self.offsets);
             block.targets[rows].fill(cell);
@@ -79,12 +80,34 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
         };
         for outer in ranges(2) {
             for middle in ranges(1) {
-                for inner in ranges(0) {
+                let occupied = self.occupied(&middle, &outer);
+                for inner in
+                    ranges(0).filter(|inner| inner.start < occupied.end && inner.end > occupied.start)
+                {
                     self.cells([inner, middle.clone(), outer.clone()], block, &mut tally);
                 }
             }
         }
         tally
+    }
+
+    /// The stretch along the first axis that holds all grains of the given rows of cells.
+    fn occupied(&self, middle: &Range<u32>, outer: &Range<u32>) -> Range<u32> {
+        let length = self.grid.cells()[0];
+        let mut stretch = length..0;
+        for k in outer.clone() {
+            for j in middle.clone() {
+                let row = self.grid.cell_at([0, j, k]) as usize;
+                let offsets = &self.offsets[row..=row + length as usize];
+                let (begin, end) = (offsets[0], offsets[length as usize]);
+                if begin < end {
+                    let first = offsets.partition_point(|&offset| offset <= begin) as u32 - 1;
+                    let last = offsets.partition_point(|&offset| offset < end) as u32;
+                    stretch = stretch.start.min(first)..stretch.end.max(last);
+                }
+            }
+        }
+        stretch
     }
 
     fn cells(&self, [inner, middle, outer]: [Range<u32>; 3], block: &mut Block<'_, V>, tally: &mut Tally<V>) {

@@ -1,7 +1,5 @@
 //! What HSMC adds to CBA: an excluded volume on the level of cells.
 
-use rayon::prelude::*;
-
 use super::Step;
 use super::admission::Moves;
 use super::blocks::{Block, blocks};
@@ -11,6 +9,7 @@ use super::coloured_pass::ColouredPass;
 use super::enskog::EnskogFactors;
 use super::flight::Flights;
 use super::laws::{Laws, Room};
+use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
@@ -89,15 +88,22 @@ impl<V: Vector> ExcludedVolume<V> {
         step: Step,
         tally: &mut Tally<V>,
     ) {
+        let capacity = self.capacity(gas);
+        let mut crowds = std::mem::take(&mut self.moves.crowded);
+        crowds.clear();
         let (grid, offsets, columns) = gas.parts_mut();
         space.spare.take_labels(columns);
         let flights = Flights::new(laws, grid, step);
         let (moves, columns) = (&self.moves, &*columns);
-        let tallies: Vec<_> = blocks(offsets, &mut space.spare, &mut space.cells)
-            .into_par_iter()
-            .map(|block| fly_block(&flights, moves, columns, block))
-            .collect();
-        tally.add(&Tally::total(tallies));
+        let blocks = blocks(offsets, &mut space.spare, &mut space.cells);
+        let flown = parallel::map(columns.len(), blocks, |block| {
+            fly_block(&flights, moves, columns, capacity, block)
+        });
+        for (block, crowded) in flown {
+            tally.add(&block);
+            crowds.extend(crowded);
+        }
+        self.moves.crowded = crowds;
     }
 
     /// Rejects moves into cells without room. A rejected grain keeps position and velocity, and
@@ -141,13 +147,16 @@ impl<V: Vector> ExcludedVolume<V> {
 }
 
 /// Flies the grains of a block from the columns to the spare ones and announces who changes cells.
+/// Also returns the cells that were found crowded.
 fn fly_block<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
     moves: &Moves,
     columns: &Columns<V>,
+    capacity: u32,
     block: Block<'_, V>,
-) -> Tally<V> {
+) -> (Tally<V>, Vec<u32>) {
     let mut tally = Tally::default();
+    let mut crowded = Vec::new();
     for k in 0..block.ids.len() {
         let row = block.first_row + k;
         let (position, velocity) = (columns.positions[row], columns.velocities[row]);
@@ -159,11 +168,11 @@ fn fly_block<V: Vector, R: Restitution>(
         tally.counts.removed += u64::from(flight.left);
         block.targets[k] = target;
         let source = moves.sources[row];
-        if target != source {
-            moves.announce(source, target);
+        if target != source && moves.announce(source, target) > capacity {
+            crowded.push(target);
         }
     }
-    tally
+    (tally, crowded)
 }
 
 /// A rejected move has not met the walls it would have met.

@@ -1,13 +1,12 @@
 //! The step of the gas engines, DSMC and CBA: collide a cell, move its grains, one pass over memory.
 
-use rayon::prelude::*;
-
 use super::Step;
 use super::blocks::{Block, blocks};
 use super::cell_pairs::{Displaced, PairCollisions};
 use super::enskog::EnskogFactors;
 use super::flight::Flights;
 use super::laws::{Laws, Room};
+use super::parallel;
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
@@ -37,9 +36,9 @@ pub(crate) fn collide_and_move<V: Vector, R: Restitution>(
         room: Room::at(grid, &laws.boundary, step.start),
         flights: Flights::new(laws, grid, step),
     };
+    let grains = columns.len();
     let blocks = blocks(offsets, columns, &mut space.cells);
-    let tallies: Vec<_> = blocks.into_par_iter().map(|block| pass.block(block, offsets)).collect();
-    Tally::total(tallies)
+    Tally::total(parallel::map(grains, blocks, |block| pass.block(block, offsets)))
 }
 
 impl<V: Vector, R: Restitution> GasPass<'_, V, R> {

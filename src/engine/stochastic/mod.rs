@@ -13,6 +13,7 @@ mod excluded_volume;
 mod flight;
 mod gas_pass;
 pub mod laws;
+mod parallel;
 pub mod rules;
 mod tally;
 mod time_step;

@@ -1,0 +1,20 @@
+//! Whether work is worth sharing among threads. The outcome is the same either way.
+
+use rayon::prelude::*;
+
+/// Below this many grains, waking threads costs more than they save.
+const FEWEST_GRAINS: usize = 8192;
+
+/// `work` done on every item, results in the order of the items; shared among threads when
+/// there are enough `grains`.
+pub(crate) fn map<T: Send, R: Send>(
+    grains: usize,
+    items: Vec<T>,
+    work: impl Fn(T) -> R + Sync + Send,
+) -> Vec<R> {
+    if grains < FEWEST_GRAINS {
+        items.into_iter().map(work).collect()
+    } else {
+        items.into_par_iter().map(work).collect()
+    }
+}
