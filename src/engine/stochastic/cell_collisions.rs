@@ -3,8 +3,7 @@
 //! Cells are treated like grains with the mass and mean velocity of what they hold. The energy
 //! that an inelastic cell collision takes returns as heat, so that momentum and energy are kept.
 
-use rayon::prelude::*;
-
+use super::parallel;
 use crate::engine::report::Counts;
 use crate::matter::gas::Gas;
 use crate::matter::grid::Grid;
@@ -90,7 +89,7 @@ impl<V: Vector> CellCollisions<V> {
             let serial = step.wrapping_mul(u64::from(rules.sweeps)).wrapping_add(sweep);
             let random = streams.at(serial, Phase::CellCollisions);
             self.choose(gas, rules.capacity, parity);
-            let outcomes = self.collide(rules, gas.grid(), parity, random, counts);
+            let outcomes = self.collide(rules, gas, parity, random, counts);
             self.apply(gas, outcomes, random);
         }
     }
@@ -118,12 +117,9 @@ impl<V: Vector> CellCollisions<V> {
     }
 
     fn measure(&mut self, gas: &Gas<V>) {
-        let measured: Vec<_> = self
-            .active
-            .par_iter()
-            .with_min_len(64)
-            .map(|&cell| CellField::of(&gas.velocities()[gas.rows(cell)]))
-            .collect();
+        let measured = parallel::map_slice(gas.len(), &self.active, |&cell| {
+            CellField::of(&gas.velocities()[gas.rows(cell)])
+        });
         for (&cell, field) in self.active.iter().zip(measured) {
             self.fields[cell as usize] = field;
         }
@@ -147,12 +143,9 @@ impl<V: Vector> CellCollisions<V> {
             }
             best.0
         };
-        let choices: Vec<_> = self
-            .active
-            .par_iter()
-            .with_min_len(64)
-            .map(|&cell| if is_white(gas.grid(), cell, parity) { choice(cell) } else { NOBODY })
-            .collect();
+        let choices = parallel::map_slice(gas.len(), &self.active, |&cell| {
+            if is_white(gas.grid(), cell, parity) { choice(cell) } else { NOBODY }
+        });
         for (&cell, choice) in self.active.iter().zip(choices) {
             self.choices[cell as usize] = choice;
         }
@@ -162,22 +155,19 @@ impl<V: Vector> CellCollisions<V> {
     fn collide(
         &self,
         rules: CellCollisionRules,
-        grid: &Grid<V>,
+        gas: &Gas<V>,
         parity: u32,
         random: PhaseStreams,
         counts: &mut Counts<V>,
     ) -> Vec<Outcome<V>> {
-        let pairs: Vec<_> = self
-            .active
-            .par_iter()
-            .with_min_len(64)
-            .filter(|&&cell| !is_white(grid, cell, parity))
-            .filter_map(|&cell| self.accepted_suitor(grid, cell))
-            .map(|pair| self.outcome(rules, grid, pair, random))
-            .collect();
-        counts.cell_collisions += pairs.len() as u64;
-        let mut outcomes = Vec::with_capacity(2 * pairs.len());
-        for (black, white, carried) in pairs {
+        let grid = gas.grid();
+        let pairs = parallel::map_slice(gas.len(), &self.active, |&cell| {
+            let pair = if is_white(grid, cell, parity) { None } else { self.accepted_suitor(grid, cell) };
+            pair.map(|pair| self.outcome(rules, grid, pair, random))
+        });
+        let mut outcomes = Vec::with_capacity(self.active.len());
+        for (black, white, carried) in pairs.into_iter().flatten() {
+            counts.cell_collisions += 1;
             outcomes.extend([black, white]);
             counts.carried_momentum += carried;
         }
@@ -235,6 +225,7 @@ impl<V: Vector> CellCollisions<V> {
 
     /// Gives the grains their new velocities. `outcomes` are in rising cell number, one per cell.
     fn apply(&mut self, gas: &mut Gas<V>, outcomes: Vec<Outcome<V>>, random: PhaseStreams) {
+        let grains = gas.len();
         let (_, offsets, columns) = gas.parts_mut();
         let mut velocities = columns.velocities.as_mut_slice();
         let mut cut = 0;
@@ -248,16 +239,11 @@ impl<V: Vector> CellCollisions<V> {
             work.push((outcome, rows));
         }
         let fields = &self.fields;
-        let changed: Vec<_> = work
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|(outcome, rows)| {
-                let field = fields[outcome.cell as usize];
-                let mut random = random.stream(u64::from(outcome.cell) | 1 << 32);
-                outcome.apply(field.velocity, rows, &mut random);
-                (outcome.cell, CellField::of(rows))
-            })
-            .collect();
+        let changed = parallel::map(grains, work, |(outcome, rows)| {
+            let field = fields[outcome.cell as usize];
+            outcome.apply(field.velocity, rows, random);
+            (outcome.cell, CellField::of(rows))
+        });
         for (cell, field) in changed {
             self.fields[cell as usize] = field;
         }
@@ -278,7 +264,7 @@ impl<V: Vector> CellField<V> {
 
 impl<V: Vector> Outcome<V> {
     /// v′ = v + Δv_c, and relative to the mean either scaled by k or drawn anew.
-    fn apply(&self, mean: V, velocities: &mut [V], random: &mut Stream) {
+    fn apply(&self, mean: V, velocities: &mut [V], random: PhaseStreams) {
         match self.heat {
             Heat::Scale(k) => {
                 for velocity in velocities {
@@ -286,7 +272,8 @@ impl<V: Vector> Outcome<V> {
                 }
             }
             Heat::Renew(thermal) => {
-                let noise = zero_mean_noise(velocities.len(), thermal, random);
+                let mut random = random.stream(u64::from(self.cell) | 1 << 32);
+                let noise = zero_mean_noise(velocities.len(), thermal, &mut random);
                 for (velocity, noise) in velocities.iter_mut().zip(noise) {
                     *velocity = mean + self.kick + noise;
                 }

@@ -18,3 +18,16 @@ pub(crate) fn map<T: Send, R: Send>(
         items.into_par_iter().map(work).collect()
     }
 }
+
+/// The same over the items of a slice.
+pub(crate) fn map_slice<T: Sync, R: Send>(
+    grains: usize,
+    items: &[T],
+    work: impl Fn(&T) -> R + Sync + Send,
+) -> Vec<R> {
+    if grains < FEWEST_GRAINS {
+        items.iter().map(work).collect()
+    } else {
+        items.par_iter().with_min_len(64).map(work).collect()
+    }
+}
