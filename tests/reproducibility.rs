@@ -122,7 +122,7 @@ fn assert_same_bits(small: &Small) -> End {
         assert_eq!(end, expected, "{} with {threads} threads, looking: {looking}", small.name);
     }
     let place = tempfile::tempdir().unwrap();
-    for (threads, frames) in [(2, "0"), (7, "50")] {
+    for (threads, frames) in [(2, "0"), (1, "50")] {
         let scenario = small.with(&[&format!("record.frames={frames}")]);
         let outcome = with_threads(threads, || run_into(&place.path().join(frames), &scenario));
         assert_eq!(hash_of(&outcome), expected.state_hash, "{} with {frames} frames", small.name);
