@@ -272,6 +272,30 @@ proptest! {
     }
 }
 
+/// A displacement may carry a grain out through an open side; when its move is then rejected for lack
+/// of room, it must not keep a place outside the box.
+#[test]
+fn no_grain_stays_beyond_an_open_side() {
+    for seed in 0..40 {
+        let draw = Draw {
+            dimension: 2,
+            engine: "hsmc",
+            cell_size: 3.0,
+            boundary: [0, 3],
+            fraction: 0.51,
+            restitution: 1.0,
+            gravity: 0.0,
+            source: false,
+            time_step: TIME_STEPS[2],
+            transfer: "corrected",
+            lattice: false,
+            seed,
+            threads: 1,
+        };
+        simulate(&draw, &draw.text());
+    }
+}
+
 /// Refused draws test nothing: they have to be few.
 #[test]
 fn most_draws_are_scenarios() {
