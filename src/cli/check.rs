@@ -5,7 +5,7 @@ use clap::Args;
 use super::input::ScenarioInput;
 use super::{Exit, complain};
 
-/// Tell what a scenario means, or all that is wrong with it; runs nothing
+/// Say what a scenario means, or all that is wrong with it; nothing runs
 #[derive(Args, Debug)]
 pub(super) struct CheckArguments {
     #[command(flatten)]

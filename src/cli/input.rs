@@ -13,12 +13,12 @@ pub(super) struct ScenarioInput {
     #[arg(value_name = "SCENARIO")]
     scenario: String,
 
-    /// Engine to use instead of the scenario's: dsmc, cba or hsmc
+    /// Engine in place of the scenario's: dsmc, cba or hsmc
     #[arg(long, value_name = "KIND")]
     engine: Option<String>,
 
-    /// Seed of all random numbers, 0 to 2^63 - 1
-    #[arg(long, value_name = "N")]
+    /// Seed of all random numbers, from 0 to 2^63 - 1
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
 
     /// Change one key, as in particles.count=500 or gravity[1]=-2; may be repeated

@@ -28,10 +28,10 @@ enum Exit {
 
 /// Granular matter, simulated fast and honestly.
 ///
-/// grainflow runs scenarios of grains (shear, pipe flow, heaps, cooling, clustering, settling)
-/// with stochastic engines on all cores, and writes a log, tables, a summary and a report.
+/// Runs scenarios of grains (shear, pipe flow, heaps, cooling, clustering, settling) with stochastic
+/// engines on all cores, and writes a log, tables, a summary and a report.
 #[derive(Debug, Parser)]
-#[command(name = "grainflow", version, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "grainflow", version, verbatim_doc_comment, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::input::ScenarioInput;
 use super::progress::Progress;
 use super::{Exit, complain};
-use crate::run::{Outcome, RunError};
+use crate::run::Outcome;
 use crate::scenario::model::AnyScenario;
 
 /// Run a scenario and write a run folder: log, tables, summary, report
@@ -22,12 +22,12 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace what the folder holds, once the new run is complete
+    /// Replace what the folder holds once the new run is complete
     #[arg(long)]
     force: bool,
 
     /// Threads to use [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     threads: Option<u16>,
 
     /// Print nothing but errors
@@ -66,13 +66,9 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
         }
         Err(error) => {
             complain(&error);
-            if is_bad_input(&error) { Exit::BadInput } else { Exit::RunFailed }
+            if error.is_bad_input() { Exit::BadInput } else { Exit::RunFailed }
         }
     }
-}
-
-fn is_bad_input(error: &RunError) -> bool {
-    error.is_bad_input()
 }
 
 /// Starts the threads and listens for Ctrl-C and SIGTERM: the first ends the run cleanly, a

@@ -36,8 +36,7 @@ pub(super) fn scenarios(arguments: &ScenariosArguments) -> Exit {
                 Exit::Done
             }
             None => {
-                let names: Vec<&str> = builtin::list().iter().map(|(name, _)| *name).collect();
-                complain(&format!("there is no built-in scenario `{name}`; there are {}", names.join(", ")));
+                complain(&builtin::unknown(name));
                 Exit::BadInput
             }
         },

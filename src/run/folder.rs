@@ -15,6 +15,12 @@ pub enum FolderError {
         /// The folder.
         path: PathBuf,
     },
+    /// It is something else.
+    #[error("{} is a file, not a folder; choose a folder with --out", path.display())]
+    NotAFolder {
+        /// The file.
+        path: PathBuf,
+    },
     /// The system refuses.
     #[error("cannot use {} as a run folder: {source}", path.display())]
     Io {
@@ -38,6 +44,9 @@ impl RunFolder {
     /// Makes the folder. One that holds something is refused; with `force` the run is written beside it
     /// and takes its place at the end, so that the old run survives a failure.
     pub fn claim(wanted: &Path, force: bool) -> Result<Self, FolderError> {
+        if wanted.exists() && !wanted.is_dir() {
+            return Err(FolderError::NotAFolder { path: wanted.to_owned() });
+        }
         let occupied = is_occupied(wanted).map_err(|source| io_error(wanted, source))?;
         if occupied && !force {
             return Err(FolderError::Exists { path: wanted.to_owned() });
@@ -52,13 +61,19 @@ impl RunFolder {
         &self.working
     }
 
+    /// Gives the folder up before anything was written to it.
+    pub fn abandon(self) {
+        // It only goes where it is empty; if the system will not have it, an empty folder stays behind.
+        let _ = fs::remove_dir(&self.working);
+    }
+
     /// Puts the run in its place, and returns that.
     pub fn settle(self) -> Result<PathBuf, FolderError> {
         if self.working != self.wanted {
             let old = beside(&self.wanted, "old");
             fs::rename(&self.wanted, &old).map_err(|source| io_error(&self.wanted, source))?;
             fs::rename(&self.working, &self.wanted).map_err(|source| io_error(&self.wanted, source))?;
-            remove(&old).map_err(|source| io_error(&old, source))?;
+            fs::remove_dir_all(&old).map_err(|source| io_error(&old, source))?;
         }
         Ok(self.wanted)
     }
@@ -68,7 +83,6 @@ fn is_occupied(path: &Path) -> io::Result<bool> {
     match fs::read_dir(path) {
         Ok(mut entries) => Ok(entries.next().is_some()),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Ok(true),
         Err(error) => Err(error),
     }
 }
@@ -76,10 +90,6 @@ fn is_occupied(path: &Path) -> io::Result<bool> {
 fn beside(path: &Path, word: &str) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     path.with_file_name(format!("{name}.{word}-{}", process_number()))
-}
-
-fn remove(path: &Path) -> io::Result<()> {
-    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
 fn io_error(path: &Path, source: io::Error) -> FolderError {

@@ -38,6 +38,9 @@ pub enum RunError {
     /// The initial state cannot be read from its log.
     #[error("initial.positions: {0}")]
     InitialLog(LogError),
+    /// The simulation cannot begin: there is no log yet.
+    #[error("{0}\nthis was while the grains were equilibrated, before the run: there is no log")]
+    Equilibration(SimulationError),
     /// The log cannot be written.
     #[error(transparent)]
     Log(#[from] LogError),
@@ -64,7 +67,9 @@ impl RunError {
     pub fn is_bad_input(&self) -> bool {
         matches!(
             self,
-            RunError::Folder(FolderError::Exists { .. }) | RunError::Initial(_) | RunError::InitialLog(_)
+            RunError::Folder(FolderError::Exists { .. } | FolderError::NotAFolder { .. })
+                | RunError::Initial(_)
+                | RunError::InitialLog(_)
         )
     }
 }
@@ -125,9 +130,14 @@ fn run_in<V: Vector>(
     let mut watch = Stopwatch::default();
     let gas = initial_gas(scenario)?;
     let folder = RunFolder::claim(folder, force)?;
+    let mut simulation = match Simulation::start(scenario, gas, &mut Stopwatch::default()) {
+        Ok(simulation) => simulation,
+        Err(error) => {
+            folder.abandon();
+            return Err(RunError::Equilibration(error));
+        }
+    };
     let log = folder.path().join("log.mcap");
-    let failed = |source| RunError::Simulation { source, log: log.clone() };
-    let mut simulation = Simulation::start(scenario, gas, &mut Stopwatch::default()).map_err(failed)?;
     let mut recorder = Recorder::create(&log, &mut simulation)?;
     let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
     watch.stop();

@@ -1,5 +1,7 @@
 //! The scenarios that come with the program.
 
+use super::suggest::did_you_mean;
+
 /// Name, title and text.
 const SCENARIOS: &[(&str, &str, &str)] = &[
     ("shear", "Bagnold shear flow between moving walls", include_str!("../../scenarios/shear.toml")),
@@ -25,6 +27,13 @@ const LIST: [(&str, &str); SCENARIOS.len()] = {
 /// Name and title of every built-in scenario.
 pub fn list() -> &'static [(&'static str, &'static str)] {
     &LIST
+}
+
+/// What to say where `name` is none of them.
+pub fn unknown(name: &str) -> String {
+    let names: Vec<&str> = SCENARIOS.iter().map(|(name, _, _)| *name).collect();
+    let meant = did_you_mean(name, names.iter().copied());
+    format!("there is no built-in scenario `{name}`{meant} (built in: {})", names.join(", "))
 }
 
 /// The text of the built-in scenario called `name`.

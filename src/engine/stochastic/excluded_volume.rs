@@ -107,7 +107,8 @@ impl<V: Vector> ExcludedVolume<V> {
     }
 
     /// Rejects moves into cells without room. A rejected grain keeps position and velocity, and
-    /// gets nothing from gravity; a diagonal mover may go along one axis, gravity's last.
+    /// gets nothing from gravity; a diagonal mover may go along one axis, gravity's last. One
+    /// whose displacement has carried it out through an open side has no place to keep: it leaves.
     pub(crate) fn admit<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
@@ -134,6 +135,10 @@ impl<V: Vector> ExcludedVolume<V> {
                     spare.positions[row] = columns.positions[row];
                     spare.positions[row][axis] = along;
                     spare.velocities[row] = columns.velocities[row];
+                    if flights.is_out(spare.positions[row]) {
+                        cells[row] = REMOVED;
+                        tally.counts.removed += 1;
+                    }
                 }
             }
         }
@@ -142,6 +147,10 @@ impl<V: Vector> ExcludedVolume<V> {
             cells[row] = self.moves.sources[row];
             spare.positions[row] = columns.positions[row];
             spare.velocities[row] = columns.velocities[row];
+            if flights.is_out(spare.positions[row]) {
+                cells[row] = REMOVED;
+                tally.counts.removed += 1;
+            }
         }
     }
 }

@@ -84,6 +84,17 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         self.grid.cell_of(position)
     }
 
+    /// Whether `position` lies beyond an open side.
+    pub(crate) fn is_out(&self, position: V) -> bool {
+        (0..V::DIMENSION).any(|axis| {
+            let x = position[axis];
+            self.laws.boundary.faces(axis).is_some_and(|[below, above]| {
+                (below == Face::Open && x < self.grid.origin()[axis])
+                    || (above == Face::Open && x >= self.grid.end()[axis])
+            })
+        })
+    }
+
     /// A flight that ends near or beyond an edge: wraps, walls and open sides.
     ///
     /// At most one hit per axis and step; a second one on the same axis brings the grain to rest at
@@ -197,21 +208,23 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         grain.velocity[*axis] = wall_speed(wall, end);
     }
 
-    /// Wraps periodic axes, notices open sides, takes rounding off at walls.
+    /// Wraps periodic axes, notices open sides, takes rounding off at walls. A place that is no number
+    /// would be mended in silence, so it spoils the velocity, which every step looks at.
     fn settle_at_the_edges(&self, grain: &mut Flight<V>) {
+        if !grain.position.is_finite() {
+            grain.velocity = V::from_fn(|_| f64::NAN);
+        }
+        grain.left = self.is_out(grain.position);
         for axis in 0..V::DIMENSION {
             let (lower, upper) = (self.grid.origin()[axis], self.grid.end()[axis]);
             match self.laws.boundary.axes[axis] {
                 AxisBoundary::Periodic => self.grid.wrap(&mut grain.position, axis),
                 AxisBoundary::Faces { lower: below, upper: above } => {
-                    let x = grain.position[axis];
-                    match below {
-                        Face::Open => grain.left |= x < lower,
-                        Face::Wall(_) => grain.position[axis] = x.max(lower),
+                    if below != Face::Open {
+                        grain.position[axis] = grain.position[axis].max(lower);
                     }
-                    match above {
-                        Face::Open => grain.left |= x >= upper,
-                        Face::Wall(_) => grain.position[axis] = grain.position[axis].min(upper),
+                    if above != Face::Open {
+                        grain.position[axis] = grain.position[axis].min(upper);
                     }
                 }
             }
