@@ -34,7 +34,7 @@ fn sonine_coefficient<V: Vector>(gas: &Gas<V>) -> f64 {
 /// A collision takes λm⟨vₙ²⟩/4, and pairs collide in proportion to their relative speed v: the loss goes as
 /// ⟨v³⟩/⟨v⟩. With f = Maxwell·(1 + a₂S₂), the relative velocity has a₂/2 in place of a₂, and
 /// ⟨vᵖ⟩ changes by the factor 1 + (a₂/2)(p/2)(p/2 − 1)/2: 1 + 3a₂/16 for p = 3, 1 − a₂/16 for p = 1, so
-/// that −d ln T/dτ = 2γ₀ (1 + a₂/4). Left out are a₂²/64, here 4·10⁻⁴, and a₃/32, about −10⁻³.
+/// that −d ln T/dτ = 2γ₀ (1 + a₂/4). Left out are 5a₂²/128, below 10⁻³ here, and a₃/32 ≈ −2·10⁻³ (a₃ ≈ −0.05).
 /// The law holds at every τ: ln T over a stretch of τ takes a₂ averaged over collisions, not over time.
 fn cooling_over_theory<V: Vector>(seed: u64) -> f64 {
     let mut bed = Bed::<V>::new(Plan::new(Kind::Dsmc, 0.05, 1, GRAINS).with_restitution(RESTITUTION), seed);
