@@ -6,6 +6,8 @@
 //!
 //! `cargo test --release --test physics_gas -- --nocapture` prints what was measured.
 
+#![expect(clippy::print_stdout, reason = "what was measured, for those who ask for it")]
+
 mod bed;
 mod claim;
 
