@@ -242,6 +242,57 @@ mod tests {
         assert!((mean_normal_square::<DVec3>() - 0.5).abs() < 2.1e-3);
     }
 
+    /// Offset of the centres across the approach, in units of d: the normal without its part along `direction`.
+    fn offsets<V: Vector>(direction: V, draws: u32) -> impl Iterator<Item = V> {
+        let mut random = stream();
+        (0..draws).map(move |_| {
+            let normal = V::contact_normal(direction, &mut random);
+            normal - direction * normal.dot(direction)
+        })
+    }
+
+    /// Whether `sum` of `draws` values of this mean and second moment is within four standard errors.
+    fn agrees(sum: f64, draws: u32, mean: f64, second: f64) -> bool {
+        let n = f64::from(draws);
+        (sum / n - mean).abs() < 4.0 * ((second - mean * mean) / n).sqrt()
+    }
+
+    #[test]
+    fn impact_parameters_are_uniform_in_two_dimensions() {
+        let draws = 200_000;
+        let (mut first, mut second, mut fourth) = (0.0, 0.0, 0.0);
+        for offset in offsets(DVec2::new(0.6, -0.8), draws) {
+            let b = offset.dot(DVec2::new(0.8, 0.6));
+            first += b;
+            second += b * b;
+            fourth += b.powi(4);
+        }
+        assert!(agrees(first, draws, 0.0, 1.0 / 3.0));
+        assert!(agrees(second, draws, 1.0 / 3.0, 1.0 / 5.0));
+        assert!(agrees(fourth, draws, 1.0 / 5.0, 1.0 / 9.0));
+    }
+
+    /// ⟨b²⟩ = 1/2 and ⟨b⁴⟩ = 1/3 for the radius; for two axes across, ⟨p⟩ = 0, ⟨p²⟩ = 1/4, ⟨pq⟩ = 0,
+    /// ⟨p⁴⟩ = 1/8, ⟨p²q²⟩ = 1/24. A uniform b would have ⟨b²⟩ = 1/3, and ⟨b⟩ = 1/2 in place of 2/3.
+    #[test]
+    fn impact_parameters_are_uniform_in_the_disc_in_three_dimensions() {
+        let draws = 200_000;
+        for direction in [DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.36, 0.48, -0.8), DVec3::NEG_Z] {
+            let (along_p, along_q) = direction.any_orthonormal_pair();
+            let mut sums = [0.0; 7];
+            for offset in offsets(direction, draws) {
+                let (p, q, b) = (offset.dot(along_p), offset.dot(along_q), offset.length());
+                let values = [b, b * b, b.powi(4), p, q, p * p, p * q];
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+            }
+            let means = [2.0 / 3.0, 0.5, 1.0 / 3.0, 0.0, 0.0, 0.25, 0.0];
+            let seconds = [0.5, 1.0 / 3.0, 0.2, 0.25, 0.25, 0.125, 1.0 / 24.0];
+            for k in 0..sums.len() {
+                assert!(agrees(sums[k], draws, means[k], seconds[k]), "moment {k} along {direction}");
+            }
+        }
+    }
+
     #[test]
     fn displacement_ratio_is_the_momentum_share() {
         for r in [0.0, 0.5, 0.9, 1.0] {
