@@ -66,7 +66,7 @@ fn profile(name: &str, time: f64) -> Profile {
     }
 }
 
-fn state(count: u32, time: f64) -> SavedState<DVec2> {
+fn state(count: u32, time: f64) -> SavedState<'static, DVec2> {
     SavedState {
         time,
         compensation: -0.0,
@@ -334,7 +334,7 @@ fn any_vector<V: Vector>() -> impl Strategy<Value = V> {
     [any_bits(), any_bits(), any_bits()].prop_map(|components| V::from_fn(|axis| components[axis]))
 }
 
-fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedState<V>> {
+fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedState<'static, V>> {
     let grain = (any_vector::<V>(), any_vector::<V>(), any::<u32>(), any_vector::<DVec3>(), any::<u8>());
     let columns = (prop::collection::vec(grain, 0..20), any::<bool>(), any::<bool>());
     let numbers = (prop::array::uniform7(any_bits()), prop::array::uniform12(any::<u64>()));
@@ -342,17 +342,17 @@ fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedStat
     let memories = prop::collection::vec(("[a-z-]{0,8}", prop::collection::vec(any_bits(), 0..5)), 0..4);
     (columns, numbers, momentum, prop::collection::vec(any::<u64>(), 0..4), memories).prop_map(
         |((grains, rough, mixed), (floats, counts), momentum, samples, memories)| {
-            let mut state = SavedState::<V> { samples, memories, ..Default::default() };
-            state.columns.spins = rough.then(Vec::new);
-            state.columns.species = mixed.then(Vec::new);
+            let mut state = SavedState::<'static, V> { samples, memories, ..Default::default() };
+            state.columns.to_mut().spins = rough.then(Vec::new);
+            state.columns.to_mut().species = mixed.then(Vec::new);
             for (row, (position, velocity, id, spin, species)) in grains.into_iter().enumerate() {
-                state.columns.insert(row, position, velocity, id);
-                if let Some(spins) = &mut state.columns.spins {
+                state.columns.to_mut().insert(row, position, velocity, id);
+                if let Some(spins) = &mut state.columns.to_mut().spins {
                     let components = spin.to_array();
                     let width = spins[row].as_ref().len();
                     spins[row].as_mut().copy_from_slice(&components[..width]);
                 }
-                if let Some(all) = &mut state.columns.species {
+                if let Some(all) = &mut state.columns.to_mut().species {
                     all[row] = species;
                 }
             }
@@ -392,7 +392,7 @@ fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedStat
 }
 
 /// All numbers of a state as text that tells any two bit patterns apart.
-fn bits<V: Vector>(state: &SavedState<V>) -> String {
+fn bits<V: Vector>(state: &SavedState<'_, V>) -> String {
     let vector = |v: V| (0..V::DIMENSION).map(|axis| v[axis].to_bits()).collect::<Vec<_>>();
     let spin = |spin: &V::Spin| spin.as_ref().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
     let columns = &state.columns;
@@ -423,7 +423,7 @@ fn bits<V: Vector>(state: &SavedState<V>) -> String {
     )
 }
 
-fn comes_back<V: Vector>(state: &SavedState<V>) {
+fn comes_back<V: Vector>(state: &SavedState<'_, V>) {
     let folder = folder();
     let path = folder.path().join("log.mcap");
     let mut log = LogWriter::create(&path, &header()).unwrap();

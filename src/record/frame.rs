@@ -20,11 +20,12 @@ const FLOAT_FIELDS: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
 /// The choice is a function of the identities alone and later pictures of fewer grains, or with
 /// fewer points, keep the same ones: a grain that is seen stays in sight.
 pub fn frame<V: Vector>(time: f64, grains: &Columns<V>, most_points: Option<usize>) -> Frame {
-    let mut rows: Vec<usize> = match most_points {
+    let mut rows: Vec<u32> = match most_points {
         Some(most) if most < grains.len() => chosen(&grains.ids, most),
-        _ => (0..grains.len()).collect(),
+        _ => (0..grains.len() as u32).collect(),
     };
-    rows.sort_unstable_by_key(|&row| grains.ids[row]);
+    rows.sort_unstable_by_key(|&row| grains.ids[row as usize]);
+    let rows: Vec<usize> = rows.into_iter().map(|row| row as usize).collect();
     Frame {
         time,
         grains: grains.len() as u64,
@@ -35,10 +36,10 @@ pub fn frame<V: Vector>(time: f64, grains: &Columns<V>, most_points: Option<usiz
 }
 
 /// Rows of the `most` grains that come first in an order that spreads neighbouring identities apart.
-fn chosen(ids: &[u32], most: usize) -> Vec<usize> {
+fn chosen(ids: &[u32], most: usize) -> Vec<u32> {
     // Multiples of the golden ratio fill 0 … 2³² evenly and never twice.
-    let rank = |row: usize| ids[row].wrapping_mul(0x9E37_79B1);
-    let mut rows: Vec<usize> = (0..ids.len()).collect();
+    let rank = |row: u32| ids[row as usize].wrapping_mul(0x9E37_79B1);
+    let mut rows: Vec<u32> = (0..ids.len() as u32).collect();
     if most < rows.len() {
         rows.select_nth_unstable_by_key(most, |&row| rank(row));
         rows.truncate(most);

@@ -28,20 +28,20 @@ pub fn read_log(path: &Path) -> Result<RunLog, LogError> {
 }
 
 /// All complete saved states of the log at `path`, in the order of their times.
-pub fn read_states<V: Vector>(path: &Path) -> Result<Vec<SavedState<V>>, LogError> {
+pub fn read_states<V: Vector>(path: &Path) -> Result<Vec<SavedState<'static, V>>, LogError> {
     let mut states = Vec::new();
     each_state(path, |state| states.push(state))?;
     Ok(states)
 }
 
 /// The last complete saved state of the log at `path`, from which its run can go on.
-pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<V>>, LogError> {
+pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<'static, V>>, LogError> {
     let mut last = None;
     each_state(path, |state| last = Some(state))?;
     Ok(last)
 }
 
-fn each_state<V: Vector>(path: &Path, mut take: impl FnMut(SavedState<V>)) -> Result<(), LogError> {
+fn each_state<V: Vector>(path: &Path, mut take: impl FnMut(SavedState<'static, V>)) -> Result<(), LogError> {
     let mut assembly = Assembly::<V>::default();
     scan(path, &mut |event| {
         if let Event::Message { topic: topic::STATE, data, .. } = event {

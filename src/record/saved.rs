@@ -1,5 +1,6 @@
 //! Saved states as messages: large ones in parts, every number bit for bit.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::schema::grainflow::{
@@ -20,7 +21,7 @@ pub(crate) fn parts(grains: usize) -> impl Iterator<Item = Range<usize>> {
 }
 
 /// The part of `state` that holds `rows`.
-pub(crate) fn part<V: Vector>(state: &SavedState<V>, rows: Range<usize>) -> State {
+pub(crate) fn part<V: Vector>(state: &SavedState<'_, V>, rows: Range<usize>) -> State {
     let columns = &state.columns;
     let mut message = State {
         time: Some(state.time),
@@ -45,7 +46,7 @@ pub(crate) fn part<V: Vector>(state: &SavedState<V>, rows: Range<usize>) -> Stat
 #[derive(Debug)]
 pub(crate) struct Assembly<V: Vector> {
     /// The state so far and the grains that it will have.
-    unfinished: Option<(SavedState<V>, u64)>,
+    unfinished: Option<(SavedState<'static, V>, u64)>,
 }
 
 impl<V: Vector> Default for Assembly<V> {
@@ -57,21 +58,21 @@ impl<V: Vector> Default for Assembly<V> {
 impl<V: Vector> Assembly<V> {
     /// Takes one part; gives the state when it was the last one. A state of which a part was lost to
     /// damage is passed over.
-    pub(crate) fn add(&mut self, part: &State) -> Result<Option<SavedState<V>>, &'static str> {
+    pub(crate) fn add(&mut self, part: &State) -> Result<Option<SavedState<'static, V>>, &'static str> {
         if part.dimension as usize != V::DIMENSION {
             return Err("a state has another dimension");
         }
         if part.first_row == 0 {
             self.unfinished = Some((sums_of(part).ok_or("a state lacks a field")?, part.grains));
         }
-        let follows = |(state, grains): &(SavedState<V>, u64)| {
+        let follows = |(state, grains): &(SavedState<'_, V>, u64)| {
             part.first_row == state.columns.len() as u64 && part.grains == *grains
         };
         let Some((state, grains)) = self.unfinished.as_mut().filter(|unfinished| follows(unfinished)) else {
             self.unfinished = None;
             return Ok(None);
         };
-        append(&mut state.columns, part).ok_or("the columns of a state do not fit together")?;
+        append(state.columns.to_mut(), part).ok_or("the columns of a state do not fit together")?;
         if (state.columns.len() as u64) < *grains {
             return Ok(None);
         }
@@ -79,7 +80,7 @@ impl<V: Vector> Assembly<V> {
     }
 }
 
-fn add_sums<V: Vector>(message: &mut State, state: &SavedState<V>) {
+fn add_sums<V: Vector>(message: &mut State, state: &SavedState<'_, V>) {
     message.next_id = state.next_id;
     message.engine = Some(Engine {
         step: state.engine.step,
@@ -102,16 +103,16 @@ fn add_sums<V: Vector>(message: &mut State, state: &SavedState<V>) {
 }
 
 /// The state that a first part holds, without its columns.
-fn sums_of<V: Vector>(part: &State) -> Option<SavedState<V>> {
+fn sums_of<V: Vector>(part: &State) -> Option<SavedState<'static, V>> {
     let engine = part.engine.as_ref()?;
     Some(SavedState {
         time: part.time?,
         compensation: part.compensation?,
-        columns: Columns {
+        columns: Cow::Owned(Columns {
             spins: part.spins.is_some().then(Vec::new),
             species: part.species.is_some().then(Vec::new),
             ..Columns::default()
-        },
+        }),
         next_id: part.next_id,
         engine: EngineState {
             step: engine.step,

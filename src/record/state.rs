@@ -1,5 +1,7 @@
 //! A saved state: everything that the next step reads, at full precision.
 
+use std::borrow::Cow;
+
 use crate::engine::EngineState;
 use crate::engine::report::Totals;
 use crate::matter::clock::Clock;
@@ -11,13 +13,13 @@ use crate::space::Vector;
 
 /// Everything that the next step, and the figures at the end, depend on.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SavedState<V: Vector> {
+pub struct SavedState<'a, V: Vector> {
     /// Simulated time [time].
     pub time: f64,
     /// Rounding held back by the clock.
     pub compensation: f64,
-    /// Grains in container order.
-    pub columns: Columns<V>,
+    /// Grains in container order: those of a running gas on the way into a log, owned on the way out.
+    pub columns: Cow<'a, Columns<V>>,
     /// The next identity to be given.
     pub next_id: u32,
     /// What the engine remembers.
@@ -51,10 +53,10 @@ pub struct Beginning<V> {
     pub momentum_scale: f64,
 }
 
-impl<V: Vector> SavedState<V> {
-    /// The gas of this state, in the box of `grid`.
-    pub fn gas(&self, grid: Grid<V>, grain: Grain) -> Gas<V> {
+impl<V: Vector> SavedState<'_, V> {
+    /// Takes the gas of this state out of it, into the box of `grid`.
+    pub fn take_gas(&mut self, grid: Grid<V>, grain: Grain) -> Gas<V> {
         let clock = Clock::restored(self.time, self.compensation);
-        Gas::restored(grid, grain, self.columns.clone(), clock, self.next_id)
+        Gas::restored(grid, grain, std::mem::take(&mut self.columns).into_owned(), clock, self.next_id)
     }
 }

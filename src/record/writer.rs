@@ -150,7 +150,7 @@ impl LogWriter {
     }
 
     /// Writes a saved state and flushes it.
-    pub fn state<V: Vector>(&mut self, state: &SavedState<V>) -> Result<(), LogError> {
+    pub fn state<V: Vector>(&mut self, state: &SavedState<'_, V>) -> Result<(), LogError> {
         self.checked(|log| {
             let tick = tick(state.time, log.time_scale);
             for rows in saved::parts(state.columns.len()) {

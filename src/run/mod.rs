@@ -202,7 +202,7 @@ fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::
     let saved = match &scenario.initial.positions {
         InitialPositions::Log(path) => {
             let state = last_state::<V>(path).map_err(RunError::InitialLog)?;
-            Some(state.map(|state| state.columns).unwrap_or_default())
+            Some(state.map(|state| state.columns.into_owned()).unwrap_or_default())
         }
         _ => None,
     };

@@ -5,6 +5,8 @@ pub mod limits;
 pub mod pouring;
 pub mod schedule;
 
+use std::borrow::Cow;
+
 use crate::engine::report::Totals;
 use crate::engine::{Engine, EngineError, Laps};
 use crate::law::boundary::Boundary;
@@ -69,8 +71,8 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 
     /// Goes on from a saved state, to the same bits as if there had been no interruption.
-    pub fn resume(scenario: &'s Scenario<V>, saved: SavedState<V>) -> Self {
-        let gas = saved.gas(scenario.grid(), scenario.grain);
+    pub fn resume(scenario: &'s Scenario<V>, mut saved: SavedState<'_, V>) -> Self {
+        let gas = saved.take_gas(scenario.grid(), scenario.grain);
         let mut simulation = Self::assemble(scenario, gas, saved.beginning);
         simulation.engine.restore(&saved.engine);
         simulation.totals = saved.totals;
@@ -176,11 +178,11 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 
     /// Everything that the next step and the final figures depend on.
-    pub fn saved_state(&self, recordings: u64, states: u64) -> SavedState<V> {
+    pub fn saved_state(&self, recordings: u64, states: u64) -> SavedState<'_, V> {
         SavedState {
             time: self.gas.clock.time(),
             compensation: self.gas.clock.compensation(),
-            columns: self.gas.columns().clone(),
+            columns: Cow::Borrowed(self.gas.columns()),
             next_id: self.gas.next_id(),
             engine: self.engine.state(),
             totals: self.totals.clone(),

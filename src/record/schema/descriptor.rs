@@ -187,12 +187,12 @@ mod tests {
         walk(&set, &M::TABLE.full_name(), &message.encode_to_vec())
     }
 
-    fn state() -> SavedState<DVec3> {
+    fn state() -> SavedState<'static, DVec3> {
         let mut state =
             SavedState { time: 1.0, samples: vec![3], recordings: 2, next_id: 9, ..Default::default() };
-        state.columns.spins = Some(Vec::new());
-        state.columns.species = Some(Vec::new());
-        state.columns.insert(0, DVec3::ONE, DVec3::ONE, 8);
+        state.columns.to_mut().spins = Some(Vec::new());
+        state.columns.to_mut().species = Some(Vec::new());
+        state.columns.to_mut().insert(0, DVec3::ONE, DVec3::ONE, 8);
         state.memories = vec![("energy".to_owned(), vec![1.0])];
         state.engine.step = 5;
         state.totals.steps = 5;
