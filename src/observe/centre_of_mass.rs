@@ -4,9 +4,9 @@ use super::layout::{self, Floor};
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::moments;
 use super::samples::{Samples, figure, steady_mean};
+use super::setting::Setting;
 use super::units::{LENGTH, column};
 use crate::matter::gas::Gas;
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::Estimate;
 
@@ -18,9 +18,9 @@ pub struct CentreOfMass {
 }
 
 impl CentreOfMass {
-    /// The measure for `scenario`, if gravity points at a wall.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        Some(CentreOfMass { floor: layout::floor(scenario)?, samples: Samples::new(1) })
+    /// The measure for `setting`, if gravity points at a wall.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        Some(CentreOfMass { floor: layout::floor(setting)?, samples: Samples::new(1) })
     }
 
     /// The height [length]; NaN without grains.
@@ -75,12 +75,13 @@ mod tests {
     use super::*;
     use crate::engine::report::Totals;
     use crate::law::boundary::Face;
-    use crate::observe::testing::{Bed, assert_resumes, figure_of, scenario_of, smooth};
+    use crate::matter::grid::Grid;
+    use crate::observe::testing::{Bed, assert_resumes, figure_of, setting_of, smooth};
     use glam::{DVec2, DVec3};
 
     fn bed() -> Bed<DVec3> {
-        let mut bed = scenario_of(DVec3::splat(8.0), [4, 4, 4]);
-        bed.scenario.gravity = DVec3::new(0.0, 0.0, -1.0);
+        let mut bed = setting_of(DVec3::splat(8.0), [4, 4, 4]);
+        bed.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
         bed.walls(2, smooth(), Face::Open);
         bed
     }
@@ -93,7 +94,7 @@ mod tests {
             (bed.gas(time, positions, vec![DVec3::ZERO; 2]), Totals::default())
         };
         let states = [state(0.0, 7.0), state(1.0, 5.0), state(2.0, 2.0)];
-        let mut measure = CentreOfMass::new(&bed.scenario).unwrap();
+        let mut measure = CentreOfMass::new(&bed.setting).unwrap();
         assert_eq!(figure_of(&mut measure, &states, 1.0, "centre_of_mass_height"), (Some(1.5), None));
         let (mean, error) = figure_of(&mut measure, &states, 1.0, "centre_of_mass_mean_height");
         assert_eq!(mean, Some(2.25));
@@ -103,24 +104,24 @@ mod tests {
     #[test]
     fn a_vibrating_floor_counts_from_its_mean_place() {
         let mut bed = bed();
-        bed.scenario.grid_origin = DVec3::new(0.0, 0.0, -1.0);
-        bed.scenario.grid_size = DVec3::new(8.0, 8.0, 9.0);
+        let (origin, size) = (DVec3::new(0.0, 0.0, -1.0), DVec3::new(8.0, 8.0, 9.0));
+        bed.setting.grid = Grid::new(origin, size, &[4, 4, 4], &[true; 3]);
         let states = [(bed.gas(0.0, vec![DVec3::splat(2.5)], vec![DVec3::ZERO]), Totals::default())];
-        let mut measure = CentreOfMass::new(&bed.scenario).unwrap();
+        let mut measure = CentreOfMass::new(&bed.setting).unwrap();
         assert_eq!(figure_of(&mut measure, &states, 0.0, "centre_of_mass_height").0, Some(2.5));
     }
 
     #[test]
     fn it_needs_a_floor() {
-        let mut bed = scenario_of(DVec2::splat(8.0), [4, 4, 1]);
-        bed.scenario.gravity = DVec2::new(0.0, -1.0);
-        assert!(CentreOfMass::new(&bed.scenario).is_none());
+        let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
+        bed.setting.gravity = DVec2::new(0.0, -1.0);
+        assert!(CentreOfMass::new(&bed.setting).is_none());
     }
 
     #[test]
     fn it_resumes() {
         let bed = bed();
-        let make = || Box::new(CentreOfMass::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec3>>;
+        let make = || Box::new(CentreOfMass::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec3>>;
         assert_resumes(make, &bed.random_states(30, 20));
     }
 }

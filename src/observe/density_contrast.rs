@@ -3,10 +3,10 @@
 use super::layout;
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_mean};
+use super::setting::Setting;
 use super::slices;
 use super::units::{PURE, column};
 use crate::matter::gas::Gas;
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::{mean, standard_deviation};
 
@@ -22,9 +22,9 @@ pub struct DensityContrast {
 }
 
 impl DensityContrast {
-    /// The measure for `scenario`, if grains fall for ever along a periodic axis of several cells.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        let axis = layout::pipe_axis(scenario).filter(|&axis| scenario.cells[axis] > 1)?;
+    /// The measure for `setting`, if grains fall for ever along a periodic axis of several cells.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        let axis = layout::pipe_axis(setting).filter(|&axis| setting.grid.cells()[axis] > 1)?;
         Some(DensityContrast { axis, samples: Samples::new(2) })
     }
 
@@ -81,12 +81,12 @@ impl<V: Vector> Measure<V> for DensityContrast {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{Bed, assert_resumes, figure_of, scenario_of, show};
+    use crate::observe::testing::{Bed, assert_resumes, figure_of, setting_of, show};
     use glam::{DVec2, DVec3};
 
     fn pipe<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
-        let mut bed = scenario_of(size, cells);
-        bed.scenario.gravity = V::along(1, -1.0);
+        let mut bed = setting_of(size, cells);
+        bed.setting.gravity = V::along(1, -1.0);
         bed
     }
 
@@ -94,7 +94,7 @@ mod tests {
     fn independent_grains_have_the_contrast_of_poisson() {
         let bed = pipe(DVec3::new(4.0, 80.0, 4.0), [2, 40, 2]);
         let states = bed.random_states(101, 1000);
-        let mut measure = DensityContrast::new(&bed.scenario).unwrap();
+        let mut measure = DensityContrast::new(&bed.setting).unwrap();
         let (ratio, error) = figure_of(&mut measure, &states, 1.0, "contrast_over_poisson");
         let (ratio, error) = (ratio.unwrap(), error.unwrap());
         // ⟨s⟩ of 40 slices lies 1/(4·39) below σ; s scatters by 1/√78 each time, 100 times.
@@ -117,7 +117,7 @@ mod tests {
         }
         let velocities = vec![DVec2::ZERO; positions.len()];
         let state = (bed.gas(0.0, positions, velocities), Totals::default());
-        let values = show(&mut DensityContrast::new(&bed.scenario).unwrap(), &state);
+        let values = show(&mut DensityContrast::new(&bed.setting).unwrap(), &state);
         let expected = 0.5 / 2.0_f64.sqrt() * (20.0_f64 / 19.0).sqrt();
         assert!((values[0] - expected).abs() < 5e-4, "{values:?}");
     }
@@ -126,15 +126,15 @@ mod tests {
     fn without_grains_there_is_none() {
         let bed = pipe(DVec2::splat(4.0), [2, 2, 1]);
         let states = [(bed.gas(0.0, vec![], vec![]), Totals::default())];
-        let mut measure = DensityContrast::new(&bed.scenario).unwrap();
+        let mut measure = DensityContrast::new(&bed.setting).unwrap();
         assert_eq!(figure_of(&mut measure, &states, 0.0, "density_contrast"), (None, None));
-        assert!(DensityContrast::new(&scenario_of(DVec2::splat(4.0), [2, 2, 1]).scenario).is_none());
+        assert!(DensityContrast::new(&setting_of(DVec2::splat(4.0), [2, 2, 1]).setting).is_none());
     }
 
     #[test]
     fn it_resumes() {
         let bed = pipe(DVec2::splat(20.0), [10, 10, 1]);
-        let make = || Box::new(DensityContrast::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec2>>;
+        let make = || Box::new(DensityContrast::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec2>>;
         assert_resumes(make, &bed.random_states(30, 100));
     }
 }

@@ -2,9 +2,9 @@
 
 use super::layout;
 use super::measure::{Measure, Profile, Snapshot};
+use super::setting::Setting;
 use super::slices;
 use super::units::{LENGTH, PURE, column};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
 /// Volume fraction in slices of one cell along gravity; else across walls; else along the longest axis.
@@ -14,9 +14,9 @@ pub struct DensityProfile {
 }
 
 impl DensityProfile {
-    /// The measure for `scenario`; every scenario has it.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Self {
-        DensityProfile { axis: layout::profile_axis(scenario) }
+    /// The measure for `setting`; every one has it.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Self {
+        DensityProfile { axis: layout::profile_axis(setting) }
     }
 }
 
@@ -46,18 +46,18 @@ impl<V: Vector> Measure<V> for DensityProfile {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{assert_resumes, scenario_of};
+    use crate::observe::testing::{assert_resumes, setting_of};
     use glam::DVec3;
     use std::f64::consts::PI;
 
     #[test]
     fn slices_of_known_content() {
-        let bed = scenario_of(DVec3::new(2.0, 4.0, 6.0), [1, 2, 3]);
+        let bed = setting_of(DVec3::new(2.0, 4.0, 6.0), [1, 2, 3]);
         let mut positions = vec![DVec3::new(1.0, 1.0, 5.0); 4];
         positions.push(DVec3::new(1.0, 3.0, 1.0));
         let gas = bed.gas(2.5, positions, vec![DVec3::ZERO; 5]);
         let totals = Totals::default();
-        let profiles = DensityProfile::new(&bed.scenario).profiles(&Snapshot { gas: &gas, totals: &totals });
+        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot { gas: &gas, totals: &totals });
         assert_eq!(profiles[0].time, 2.5);
         assert_eq!(profiles[0].values[0], [1.0, 3.0, 5.0]);
         // A slice holds 16, a grain π/6.
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn it_resumes() {
-        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
-        assert_resumes(|| Box::new(DensityProfile::new(&bed.scenario)), &bed.random_states(4, 20));
+        let bed = setting_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert_resumes(|| Box::new(DensityProfile::new(&bed.setting)), &bed.random_states(4, 20));
     }
 }

@@ -3,8 +3,8 @@
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
 use super::moments::{kinetic_energy, momentum, momentum_scale, temperature};
 use super::samples::figure;
+use super::setting::Setting;
 use super::units::{ENERGY, PURE, column};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::Estimate;
 
@@ -25,9 +25,9 @@ struct Start<V> {
 }
 
 impl<V: Vector> Energy<V> {
-    /// The measure for `scenario`; every scenario has it.
-    pub fn new(scenario: &Scenario<V>) -> Self {
-        let is_free = scenario.boundary.is_fully_periodic() && scenario.gravity == V::ZERO;
+    /// The measure for `setting`; every one has it.
+    pub fn new(setting: &Setting<V>) -> Self {
+        let is_free = setting.boundary.is_fully_periodic() && setting.gravity == V::ZERO;
         Energy { is_free, start: None }
     }
 
@@ -108,39 +108,38 @@ impl<V: Vector> Measure<V> for Energy<V> {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{assert_resumes, figure_of, scenario_of, show, smooth};
+    use crate::observe::testing::{assert_resumes, figure_of, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
     #[test]
     fn energy_and_drift_by_hand() {
-        let mut bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let mut bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
         let places = vec![DVec2::ONE, DVec2::splat(3.0)];
         let state = |time, v| (bed.gas(time, places.clone(), vec![DVec2::X, v]), Totals::default());
         let states = [state(0.0, -DVec2::X * 0.5), state(1.0, -DVec2::X)];
-        let figure = |name| figure_of(&mut Energy::new(&bed.scenario), &states, 0.0, name).0;
+        let figure = |name| figure_of(&mut Energy::new(&bed.setting), &states, 0.0, name).0;
         // v̄ = 1/4: 2 (3/4)² / (2 · 2).
-        assert_eq!(show(&mut Energy::new(&bed.scenario), &states[0])[..2], [0.625, 0.281_25]);
+        assert_eq!(show(&mut Energy::new(&bed.setting), &states[0])[..2], [0.625, 0.281_25]);
         assert_eq!(figure("kinetic_energy_initial"), Some(0.625));
         assert_eq!(figure("kinetic_energy_final"), Some(1.0));
         assert_eq!(figure("temperature"), Some(0.5));
         // |0 − 1/2| / (1 + 1/2).
         assert_eq!(figure("momentum_drift"), Some(1.0 / 3.0));
         bed.walls(0, smooth(), smooth());
-        let drift = figure_of(&mut Energy::new(&bed.scenario), &states, 0.0, "momentum_drift");
+        let drift = figure_of(&mut Energy::new(&bed.setting), &states, 0.0, "momentum_drift");
         assert_eq!(drift.0, None);
     }
 
     #[test]
     fn it_resumes() {
-        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
-        assert_resumes(|| Box::new(Energy::new(&bed.scenario)), &bed.random_states(4, 20));
+        let bed = setting_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert_resumes(|| Box::new(Energy::new(&bed.setting)), &bed.random_states(4, 20));
     }
 
     #[test]
     fn an_empty_box_has_no_temperature() {
-        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
-        let values =
-            show(&mut Energy::new(&bed.scenario), &(bed.gas(0.0, vec![], vec![]), Totals::default()));
+        let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
+        let values = show(&mut Energy::new(&bed.setting), &(bed.gas(0.0, vec![], vec![]), Totals::default()));
         assert!(values[1].is_nan() && values[0] == 0.0);
     }
 }

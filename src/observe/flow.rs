@@ -4,9 +4,9 @@ use super::layout;
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::moments;
 use super::samples::{Samples, figure, steady_mean};
+use super::setting::Setting;
 use super::units::{RATE, VELOCITY, column};
 use crate::matter::gas::Gas;
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
 /// Grains per time through the cross-section of a pipe, averaged over its length: Σ v_g / L; and their
@@ -22,11 +22,11 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// The measure for `scenario`, if grains fall for ever along a periodic axis.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        let axis = layout::pipe_axis(scenario)?;
-        let sense = scenario.gravity[axis].signum();
-        Some(Flow { axis, sense, length: scenario.size[axis], samples: Samples::new(2) })
+    /// The measure for `setting`, if grains fall for ever along a periodic axis.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        let axis = layout::pipe_axis(setting)?;
+        let sense = setting.gravity[axis].signum();
+        Some(Flow { axis, sense, length: setting.size[axis], samples: Samples::new(2) })
     }
 
     /// Flow rate [1/time] and mean velocity [length/time]; the latter NaN without grains.
@@ -80,13 +80,13 @@ impl<V: Vector> Measure<V> for Flow {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{assert_resumes, figure_of, scenario_of};
+    use crate::observe::testing::{assert_resumes, figure_of, setting_of};
     use glam::{DVec2, DVec3};
 
     #[test]
     fn a_steady_flow() {
-        let mut bed = scenario_of(DVec3::new(4.0, 4.0, 10.0), [2, 2, 5]);
-        bed.scenario.gravity = DVec3::new(0.0, 0.0, -1.0);
+        let mut bed = setting_of(DVec3::new(4.0, 4.0, 10.0), [2, 2, 5]);
+        bed.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
         // 20 grains at speeds 2 and 4 on a length of 10: 6 per time.
         let states: Vec<_> = (0..40)
             .map(|k| {
@@ -94,21 +94,21 @@ mod tests {
                 (bed.gas(f64::from(k), vec![DVec3::ONE; 20], velocities), Totals::default())
             })
             .collect();
-        let mut measure = Flow::new(&bed.scenario).unwrap();
+        let mut measure = Flow::new(&bed.setting).unwrap();
         assert_eq!(figure_of(&mut measure, &states, 20.0, "flow_rate"), (Some(6.0), Some(0.0)));
         assert_eq!(figure_of(&mut measure, &states, 20.0, "flow_velocity"), (Some(3.0), Some(0.0)));
     }
 
     #[test]
     fn a_box_without_gravity_has_no_flow() {
-        assert!(Flow::new(&scenario_of(DVec2::splat(4.0), [2, 2, 1]).scenario).is_none());
+        assert!(Flow::new(&setting_of(DVec2::splat(4.0), [2, 2, 1]).setting).is_none());
     }
 
     #[test]
     fn it_resumes() {
-        let mut bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
-        bed.scenario.gravity = DVec2::X;
-        let make = || Box::new(Flow::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec2>>;
+        let mut bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
+        bed.setting.gravity = DVec2::X;
+        let make = || Box::new(Flow::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec2>>;
         assert_resumes(make, &bed.random_states(30, 20));
     }
 }

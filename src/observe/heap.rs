@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::layout::{self, Floor};
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
 use super::samples::figure;
+use super::setting::Setting;
 use super::units::{LENGTH, PURE, column};
 use crate::matter::gas::Gas;
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::{Estimate, StraightLine, straight_line};
 
@@ -45,15 +45,15 @@ struct Flanks {
 }
 
 impl Heap {
-    /// The measure for `scenario`, if grains fall on a floor and are poured there or can leave sideways.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        let floor = layout::floor(scenario)?;
+    /// The measure for `setting`, if grains fall on a floor and are poured there or can leave sideways.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        let floor = layout::floor(setting)?;
         let horizontal = || (0..V::DIMENSION).filter(|&axis| axis != floor.axis);
-        let open = horizontal().find(|&axis| layout::has_open_side(scenario, axis));
-        if open.is_none() && scenario.source.is_none() {
+        let open = horizontal().find(|&axis| layout::has_open_side(setting, axis));
+        if open.is_none() && !setting.is_poured {
             return None;
         }
-        let walled = || horizontal().find(|&axis| !scenario.boundary.is_periodic(axis));
+        let walled = || horizontal().find(|&axis| !setting.boundary.is_periodic(axis));
         let across = open.or_else(walled).or_else(|| horizontal().next())?;
         Some(Heap { floor, across })
     }

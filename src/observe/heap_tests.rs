@@ -1,16 +1,15 @@
 use super::*;
 use crate::engine::report::Totals;
 use crate::law::boundary::Face;
-use crate::law::source::Source;
-use crate::observe::testing::{Bed, State, assert_resumes, figure_of, scenario_of, show, smooth};
+use crate::observe::testing::{Bed, State, assert_resumes, figure_of, setting_of, show, smooth};
 use glam::{DVec2, DVec3};
 
 /// A table with open sides under gravity along `axis`, in cells of side 2.
 fn table<V: Vector>(size: V, axis: usize) -> Bed<V> {
     let mut cells = [1; 3];
     (0..V::DIMENSION).for_each(|a| cells[a] = (size[a] / 2.0) as u32);
-    let mut bed = scenario_of(size, cells);
-    bed.scenario.gravity = V::along(axis, -1.0);
+    let mut bed = setting_of(size, cells);
+    bed.setting.gravity = V::along(axis, -1.0);
     bed.walls(0, Face::Open, Face::Open);
     bed.walls(axis, smooth(), Face::Open);
     bed
@@ -19,7 +18,7 @@ fn table<V: Vector>(size: V, axis: usize) -> Bed<V> {
 /// Grains on every half height below a roof with the given slopes and a top of 20 at x = 41.
 fn roof(bed: &Bed<DVec2>, left: f64, right: f64) -> Vec<DVec2> {
     let mut positions = Vec::new();
-    for bin in 0..bed.scenario.cells[0] {
+    for bin in 0..bed.setting.grid.cells()[0] {
         let x = f64::from(2 * bin + 1);
         let h = 20.0 - if x < 41.0 { left * (41.0 - x) } else { right * (x - 41.0) };
         let below = (0..).map(|k| h - 0.5 * f64::from(k)).take_while(|&y| y > 0.0);
@@ -34,7 +33,7 @@ fn at_rest<V: Vector>(bed: &Bed<V>, positions: Vec<V>) -> State<V> {
 }
 
 fn figure_at<V: Vector>(bed: &Bed<V>, positions: Vec<V>, name: &str) -> (Option<f64>, Option<f64>) {
-    let mut heap = Heap::new(&bed.scenario).unwrap();
+    let mut heap = Heap::new(&bed.setting).unwrap();
     figure_of(&mut heap, &[at_rest(bed, positions)], 0.0, name)
 }
 
@@ -92,7 +91,7 @@ fn a_heap_against_a_wall_has_one_flank() {
 fn the_surface_is_a_profile_and_the_slope_a_series() {
     let bed = table(DVec2::new(100.0, 60.0), 1);
     let state = at_rest(&bed, roof(&bed, 0.5, 0.5));
-    let mut heap = Heap::new(&bed.scenario).unwrap();
+    let mut heap = Heap::new(&bed.setting).unwrap();
     let values = show(&mut heap, &state);
     assert!((values[0] - 0.5).abs() < 1e-12 && values[1] == 20.0);
     let profiles = heap.profiles(&Snapshot { gas: &state.0, totals: &state.1 });
@@ -119,7 +118,7 @@ fn a_cone_is_cut_through_its_top() {
 #[test]
 fn it_stands_upside_down_too() {
     let mut bed = table(DVec2::new(100.0, 60.0), 1);
-    bed.scenario.gravity = DVec2::new(0.0, 1.0);
+    bed.setting.gravity = DVec2::new(0.0, 1.0);
     bed.walls(1, Face::Open, smooth());
     let hanging = roof(&bed, 0.5, 0.4).into_iter().map(|p| DVec2::new(p.x, 60.0 - p.y)).collect();
     assert!((figure_at(&bed, hanging, "heap_slope").0.unwrap() - 0.45).abs() < 1e-12);
@@ -129,22 +128,15 @@ fn it_stands_upside_down_too() {
 fn it_needs_a_floor_and_a_source_or_an_open_side() {
     let mut bed = table(DVec2::new(10.0, 10.0), 1);
     bed.walls(0, smooth(), smooth());
-    assert!(Heap::new(&bed.scenario).is_none());
-    bed.scenario.source = Some(Source {
-        count: 1,
-        rate: 1.0,
-        position: DVec2::ZERO,
-        width: 1.0,
-        height: 1.0,
-        velocity: DVec2::ZERO,
-    });
-    assert!(Heap::new(&bed.scenario).is_some());
-    bed.scenario.gravity = DVec2::ZERO;
-    assert!(Heap::new(&bed.scenario).is_none());
+    assert!(Heap::new(&bed.setting).is_none());
+    bed.setting.is_poured = true;
+    assert!(Heap::new(&bed.setting).is_some());
+    bed.setting.gravity = DVec2::ZERO;
+    assert!(Heap::new(&bed.setting).is_none());
 }
 
 #[test]
 fn it_resumes() {
     let bed = table(DVec2::new(20.0, 20.0), 1);
-    assert_resumes(|| Box::new(Heap::new(&bed.scenario).unwrap()), &bed.random_states(6, 60));
+    assert_resumes(|| Box::new(Heap::new(&bed.setting).unwrap()), &bed.random_states(6, 60));
 }

@@ -1,7 +1,7 @@
-//! What kind of place a scenario is: where it is sheared, which way things fall, what they fall on.
+//! What kind of place a setting is: where it is sheared, which way things fall, what they fall on.
 
+use super::setting::Setting;
 use crate::law::boundary::{Face, Wall, WallKind};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
 /// Two walls that move past each other.
@@ -34,9 +34,9 @@ impl Floor {
 }
 
 /// The first axis whose walls move past each other.
-pub(crate) fn shear<V: Vector>(scenario: &Scenario<V>) -> Option<Shear<V>> {
+pub(crate) fn shear<V: Vector>(setting: &Setting<V>) -> Option<Shear<V>> {
     (0..V::DIMENSION).find_map(|axis| {
-        let [Face::Wall(lower), Face::Wall(upper)] = scenario.boundary.faces(axis)? else {
+        let [Face::Wall(lower), Face::Wall(upper)] = setting.boundary.faces(axis)? else {
             return None;
         };
         let relative = velocity_along(upper, axis) - velocity_along(lower, axis);
@@ -53,17 +53,17 @@ fn velocity_along<V: Vector>(wall: Wall<V>, axis: usize) -> V {
 }
 
 /// The axis along which gravity is strongest.
-pub(crate) fn gravity_axis<V: Vector>(scenario: &Scenario<V>) -> Option<usize> {
-    strongest(scenario, |_| true)
+pub(crate) fn gravity_axis<V: Vector>(setting: &Setting<V>) -> Option<usize> {
+    strongest(setting, |_| true)
 }
 
 /// The periodic axis along which grains fall for ever: that of a pipe.
-pub(crate) fn pipe_axis<V: Vector>(scenario: &Scenario<V>) -> Option<usize> {
-    strongest(scenario, |axis| scenario.boundary.is_periodic(axis))
+pub(crate) fn pipe_axis<V: Vector>(setting: &Setting<V>) -> Option<usize> {
+    strongest(setting, |axis| setting.boundary.is_periodic(axis))
 }
 
-fn strongest<V: Vector>(scenario: &Scenario<V>, admits: impl Fn(usize) -> bool) -> Option<usize> {
-    let pull = |axis: usize| scenario.gravity[axis].abs();
+fn strongest<V: Vector>(setting: &Setting<V>, admits: impl Fn(usize) -> bool) -> Option<usize> {
+    let pull = |axis: usize| setting.gravity[axis].abs();
     // Of equally strong axes the first.
     (0..V::DIMENSION)
         .rev()
@@ -72,64 +72,64 @@ fn strongest<V: Vector>(scenario: &Scenario<V>, admits: impl Fn(usize) -> bool) 
 }
 
 /// The wall that gravity points at.
-pub(crate) fn floor<V: Vector>(scenario: &Scenario<V>) -> Option<Floor> {
-    let axis = gravity_axis(scenario)?;
-    let [lower, upper] = scenario.boundary.faces(axis)?;
-    let falls_down = scenario.gravity[axis] < 0.0;
+pub(crate) fn floor<V: Vector>(setting: &Setting<V>) -> Option<Floor> {
+    let axis = gravity_axis(setting)?;
+    let [lower, upper] = setting.boundary.faces(axis)?;
+    let falls_down = setting.gravity[axis] < 0.0;
     let (face, place, upwards) =
-        if falls_down { (lower, 0.0, 1.0) } else { (upper, scenario.size[axis], -1.0) };
+        if falls_down { (lower, 0.0, 1.0) } else { (upper, setting.size[axis], -1.0) };
     matches!(face, Face::Wall(_)).then_some(Floor { axis, place, upwards })
 }
 
 /// Whether grains can leave through a side of `axis`.
-pub(crate) fn has_open_side<V: Vector>(scenario: &Scenario<V>, axis: usize) -> bool {
-    scenario.boundary.faces(axis).is_some_and(|faces| faces.iter().any(|face| matches!(face, Face::Open)))
+pub(crate) fn has_open_side<V: Vector>(setting: &Setting<V>, axis: usize) -> bool {
+    setting.boundary.faces(axis).is_some_and(|faces| faces.iter().any(|face| matches!(face, Face::Open)))
 }
 
 /// The axis that profiles run along: of gravity, of shear, of the first wall, or the longest.
-pub(crate) fn profile_axis<V: Vector>(scenario: &Scenario<V>) -> usize {
+pub(crate) fn profile_axis<V: Vector>(setting: &Setting<V>) -> usize {
     let longest = || {
         (1..V::DIMENSION)
-            .fold(0, |best, axis| if scenario.size[axis] > scenario.size[best] { axis } else { best })
+            .fold(0, |best, axis| if setting.size[axis] > setting.size[best] { axis } else { best })
     };
-    gravity_axis(scenario)
-        .or_else(|| shear(scenario).map(|shear| shear.axis))
-        .or_else(|| scenario.boundary.walls().next().map(|(axis, _, _)| axis))
+    gravity_axis(setting)
+        .or_else(|| shear(setting).map(|shear| shear.axis))
+        .or_else(|| setting.boundary.walls().next().map(|(axis, _, _)| axis))
         .unwrap_or_else(longest)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::testing::{rough, scenario_of, smooth};
+    use crate::observe::testing::{rough, setting_of, smooth};
     use glam::{DVec2, DVec3};
 
     #[test]
     fn shear_is_a_difference_of_velocities() {
-        let mut bed = scenario_of(DVec3::new(4.0, 6.0, 8.0), [2, 3, 4]);
-        assert_eq!(shear(&bed.scenario), None);
+        let mut bed = setting_of(DVec3::new(4.0, 6.0, 8.0), [2, 3, 4]);
+        assert_eq!(shear(&bed.setting), None);
         bed.walls(2, rough(DVec3::new(0.0, -1.0, 0.0)), rough(DVec3::new(0.0, 2.0, 0.0)));
-        let found = shear(&bed.scenario).unwrap();
+        let found = shear(&bed.setting).unwrap();
         assert_eq!(found, Shear { axis: 2, direction: DVec3::Y, speed: 3.0 });
-        assert_eq!(profile_axis(&bed.scenario), 2);
+        assert_eq!(profile_axis(&bed.setting), 2);
         bed.walls(2, rough(DVec3::Y), rough(DVec3::Y));
-        assert_eq!(shear(&bed.scenario), None);
+        assert_eq!(shear(&bed.setting), None);
     }
 
     #[test]
     fn floors_and_pipes() {
-        let mut bed = scenario_of(DVec2::new(4.0, 6.0), [2, 3, 1]);
-        assert_eq!(profile_axis(&bed.scenario), 1);
-        bed.scenario.gravity = DVec2::new(0.5, -1.0);
-        assert_eq!((pipe_axis(&bed.scenario), floor(&bed.scenario)), (Some(1), None));
+        let mut bed = setting_of(DVec2::new(4.0, 6.0), [2, 3, 1]);
+        assert_eq!(profile_axis(&bed.setting), 1);
+        bed.setting.gravity = DVec2::new(0.5, -1.0);
+        assert_eq!((pipe_axis(&bed.setting), floor(&bed.setting)), (Some(1), None));
         bed.walls(1, smooth(), Face::Open);
-        assert_eq!(pipe_axis(&bed.scenario), Some(0));
-        let ground = floor(&bed.scenario).unwrap();
+        assert_eq!(pipe_axis(&bed.setting), Some(0));
+        let ground = floor(&bed.setting).unwrap();
         assert_eq!(ground.height(DVec2::new(1.0, 2.5)), 2.5);
-        assert!(has_open_side(&bed.scenario, 1) && !has_open_side(&bed.scenario, 0));
-        bed.scenario.gravity = DVec2::new(0.0, 1.0);
-        assert_eq!(floor(&bed.scenario), None);
+        assert!(has_open_side(&bed.setting, 1) && !has_open_side(&bed.setting, 0));
+        bed.setting.gravity = DVec2::new(0.0, 1.0);
+        assert_eq!(floor(&bed.setting), None);
         bed.walls(1, Face::Open, smooth());
-        assert_eq!(floor(&bed.scenario).unwrap().height(DVec2::new(1.0, 2.5)), 3.5);
+        assert_eq!(floor(&bed.setting).unwrap().height(DVec2::new(1.0, 2.5)), 3.5);
     }
 }

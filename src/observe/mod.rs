@@ -9,6 +9,7 @@ pub mod heap;
 pub mod measure;
 pub mod moments;
 pub mod pressure;
+pub mod setting;
 pub mod spectrum;
 pub mod velocity_profile;
 pub mod wall_stress;
@@ -21,9 +22,9 @@ mod slices;
 mod testing;
 mod units;
 
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use measure::Measure;
+use setting::Setting;
 
 /// The names of all measures, in the order in which [`measures`] gives those that apply.
 pub const NAMES: [&str; 10] = [
@@ -39,19 +40,19 @@ pub const NAMES: [&str; 10] = [
     "centre-of-mass",
 ];
 
-/// All measures that apply to `scenario`, always in the same order.
-pub fn measures<V: Vector>(scenario: &Scenario<V>) -> Vec<Box<dyn Measure<V>>> {
+/// All measures that apply to `setting`, always in the same order.
+pub fn measures<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
     let applying: [Option<Box<dyn Measure<V>>>; 10] = [
-        Some(Box::new(energy::Energy::new(scenario))),
-        Some(Box::new(density_profile::DensityProfile::new(scenario))),
-        boxed(velocity_profile::VelocityProfile::new(scenario)),
-        boxed(wall_stress::WallStress::new(scenario)),
-        boxed(pressure::Pressure::new(scenario)),
-        boxed(flow::Flow::new(scenario)),
-        boxed(density_contrast::DensityContrast::new(scenario)),
-        boxed(spectrum::Spectrum::new(scenario)),
-        boxed(heap::Heap::new(scenario)),
-        boxed(centre_of_mass::CentreOfMass::new(scenario)),
+        Some(Box::new(energy::Energy::new(setting))),
+        Some(Box::new(density_profile::DensityProfile::new(setting))),
+        boxed(velocity_profile::VelocityProfile::new(setting)),
+        boxed(wall_stress::WallStress::new(setting)),
+        boxed(pressure::Pressure::new(setting)),
+        boxed(flow::Flow::new(setting)),
+        boxed(density_contrast::DensityContrast::new(setting)),
+        boxed(spectrum::Spectrum::new(setting)),
+        boxed(heap::Heap::new(setting)),
+        boxed(centre_of_mass::CentreOfMass::new(setting)),
     ];
     applying.into_iter().flatten().collect()
 }
@@ -64,11 +65,11 @@ fn boxed<V: Vector>(measure: Option<impl Measure<V> + 'static>) -> Option<Box<dy
 mod tests {
     use super::*;
     use crate::law::boundary::Face;
-    use crate::observe::testing::{Bed, rough, scenario_of, show, smooth};
+    use crate::observe::testing::{Bed, rough, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
     fn names<V: Vector>(bed: &Bed<V>) -> Vec<&'static str> {
-        let names: Vec<&str> = measures(&bed.scenario).iter().map(|measure| measure.name()).collect();
+        let names: Vec<&str> = measures(&bed.setting).iter().map(|measure| measure.name()).collect();
         let places: Vec<usize> =
             names.iter().map(|name| NAMES.iter().position(|n| n == name).unwrap()).collect();
         assert!(places.is_sorted());
@@ -77,13 +78,13 @@ mod tests {
 
     #[test]
     fn every_kind_of_scenario_has_its_measures() {
-        let mut bed = scenario_of(DVec2::splat(8.0), [4, 4, 1]);
+        let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
         assert_eq!(names(&bed), ["energy", "density-profile", "pressure"]);
         bed.walls(1, rough(DVec2::ZERO), rough(DVec2::X));
         assert_eq!(names(&bed), ["energy", "density-profile", "velocity-profile", "wall-stress"]);
-        let mut pipe = scenario_of(DVec3::splat(8.0), [4, 4, 4]);
+        let mut pipe = setting_of(DVec3::splat(8.0), [4, 4, 4]);
         pipe.walls(0, smooth(), smooth());
-        pipe.scenario.gravity = DVec3::new(0.0, 0.0, -1.0);
+        pipe.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
         let expected = ["energy", "density-profile", "wall-stress", "flow", "density-contrast", "spectrum"];
         assert_eq!(names(&pipe), expected);
         pipe.walls(0, Face::Open, Face::Open);
@@ -93,12 +94,12 @@ mod tests {
 
     #[test]
     fn every_figure_and_column_is_named_once() {
-        let mut bed = scenario_of(DVec2::splat(8.0), [4, 4, 1]);
+        let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
         bed.walls(1, rough(-DVec2::X), rough(DVec2::X));
-        bed.scenario.gravity = DVec2::new(0.5, -1.0);
+        bed.setting.gravity = DVec2::new(0.5, -1.0);
         let states = bed.random_states(5, 30);
         let mut seen = std::collections::BTreeSet::new();
-        for mut measure in measures(&bed.scenario) {
+        for mut measure in measures(&bed.setting) {
             for column in measure.columns() {
                 assert!(seen.insert(format!("column {}", column.name)), "{}", column.name);
             }

@@ -66,12 +66,12 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::testing::{random_positions, random_velocities, scenario_of};
+    use crate::observe::testing::{random_positions, random_velocities, setting_of};
     use glam::{DVec2, DVec3};
 
     #[test]
     fn two_grains_by_hand() {
-        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
         let positions = vec![DVec2::ONE, DVec2::splat(3.0)];
         let mut gas = bed.gas(0.0, positions, vec![DVec2::new(3.0, 4.0), DVec2::new(1.0, 0.0)]);
         gas.grain.mass = 2.0;
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn an_empty_gas_has_no_energy() {
-        let gas = scenario_of(DVec3::splat(4.0), [2, 2, 2]).gas(0.0, vec![], vec![]);
+        let gas = setting_of(DVec3::splat(4.0), [2, 2, 2]).gas(0.0, vec![], vec![]);
         assert_eq!((kinetic_energy(&gas), temperature(&gas)), (0.0, 0.0));
         assert_eq!(mean_velocity(&gas), DVec3::ZERO);
     }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn threads_change_no_bit() {
         let size = DVec3::splat(10.0);
-        let gas = scenario_of(size, [5, 5, 5]).gas(
+        let gas = setting_of(size, [5, 5, 5]).gas(
             0.0,
             random_positions(1, 50_000, size),
             random_velocities(2, 50_000),

@@ -3,8 +3,8 @@
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::moments::temperature;
 use super::samples::{Samples, figure, interval_mean, steady_rate};
+use super::setting::Setting;
 use super::units::{PURE, RATE, column, stress};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
 /// P = (N T + Σ p·s / (D Δt)) / V from the virial theorem (Hansen and McDonald 2006, section 2.2), the
@@ -33,11 +33,11 @@ struct Interval {
 }
 
 impl Pressure {
-    /// The measure for `scenario`, if it is periodic everywhere and has no gravity.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        let applies = scenario.boundary.is_fully_periodic() && scenario.gravity == V::ZERO;
+    /// The measure for `setting`, if it is periodic everywhere and has no gravity.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        let applies = setting.boundary.is_fully_periodic() && setting.gravity == V::ZERO;
         applies.then(|| Pressure {
-            volume: scenario.size.product(),
+            volume: setting.size.product(),
             dimension: V::DIMENSION as f64,
             previous: None,
             samples: Samples::new(4),
@@ -132,12 +132,12 @@ impl<V: Vector> Measure<V> for Pressure {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{State, assert_resumes, figure_of, scenario_of, show, smooth};
+    use crate::observe::testing::{State, assert_resumes, figure_of, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
     /// Temperature 1/(1 + t/5)², and Σ p·s growing by `carried` T per time.
     fn cooling(cooling: bool, carried: f64) -> Vec<State<DVec2>> {
-        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
+        let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
         let state = |time: f64| {
             let (speed, integral) =
                 if cooling { (1.0 / (1.0 + time / 5.0), time / (1.0 + time / 5.0)) } else { (1.0, time) };
@@ -150,8 +150,8 @@ mod tests {
     }
 
     fn figure(states: &[State<DVec2>], name: &str) -> f64 {
-        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
-        let (value, error) = figure_of(&mut Pressure::new(&bed.scenario).unwrap(), states, 20.0, name);
+        let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
+        let (value, error) = figure_of(&mut Pressure::new(&bed.setting).unwrap(), states, 20.0, name);
         assert!(error.unwrap() < 1e-12 * (1.0 + value.unwrap()) || name == "pressure");
         value.unwrap()
     }
@@ -176,8 +176,8 @@ mod tests {
 
     #[test]
     fn the_series_has_the_same_values() {
-        let bed = scenario_of(DVec2::splat(4.0), [2, 2, 1]);
-        let mut measure = Pressure::new(&bed.scenario).unwrap();
+        let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
+        let mut measure = Pressure::new(&bed.setting).unwrap();
         let states = cooling(false, 6.0);
         assert!(show(&mut measure, &states[0]).iter().all(|x| x.is_nan()));
         let values = show(&mut measure, &states[1]);
@@ -188,19 +188,19 @@ mod tests {
 
     #[test]
     fn walls_and_gravity_have_other_measures() {
-        let mut bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
-        assert!(Pressure::new(&bed.scenario).is_some());
-        bed.scenario.gravity = DVec3::X;
-        assert!(Pressure::new(&bed.scenario).is_none());
-        bed.scenario.gravity = DVec3::ZERO;
+        let mut bed = setting_of(DVec3::splat(4.0), [2, 2, 2]);
+        assert!(Pressure::new(&bed.setting).is_some());
+        bed.setting.gravity = DVec3::X;
+        assert!(Pressure::new(&bed.setting).is_none());
+        bed.setting.gravity = DVec3::ZERO;
         bed.walls(1, smooth(), smooth());
-        assert!(Pressure::new(&bed.scenario).is_none());
+        assert!(Pressure::new(&bed.setting).is_none());
     }
 
     #[test]
     fn it_resumes() {
-        let bed = scenario_of(DVec3::splat(4.0), [2, 2, 2]);
-        let make = || Box::new(Pressure::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec3>>;
+        let bed = setting_of(DVec3::splat(4.0), [2, 2, 2]);
+        let make = || Box::new(Pressure::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec3>>;
         assert_resumes(make, &bed.random_states(30, 20));
         assert_resumes(make, &bed.random_states(1, 20));
     }

@@ -57,16 +57,16 @@ fn slices_of_cells<V: Vector>(gas: &Gas<V>, axis: usize) -> impl Iterator<Item =
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::testing::{random_positions, random_velocities, scenario_of};
+    use crate::observe::testing::{random_positions, random_velocities, setting_of};
     use glam::DVec3;
 
     #[test]
     fn slices_agree_with_the_positions() {
         let size = DVec3::new(4.0, 6.0, 10.0);
-        let bed = scenario_of(size, [2, 3, 5]);
+        let bed = setting_of(size, [2, 3, 5]);
         let gas = bed.gas(0.0, random_positions(3, 500, size), random_velocities(4, 500));
         for axis in 0..3 {
-            let mut expected = vec![(0, 0.0); bed.scenario.cells[axis] as usize];
+            let mut expected = vec![(0, 0.0); bed.setting.grid.cells()[axis] as usize];
             for (position, velocity) in gas.positions().iter().zip(gas.velocities()) {
                 let slice = &mut expected[(position[axis] / 2.0) as usize];
                 slice.0 += 1;

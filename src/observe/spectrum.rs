@@ -7,9 +7,9 @@ use super::layout;
 use super::measure::{Cadence, Figure, Measure, Profile, Snapshot};
 use super::packing::{pack, unpack};
 use super::samples::figure;
+use super::setting::Setting;
 use super::slices;
 use super::units::{PURE, RATE, column};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::{Estimate, straight_line};
 
@@ -41,15 +41,15 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// The measure for `scenario`, if grains fall for ever along a periodic axis of several cells.
-    pub fn new<V: Vector>(scenario: &Scenario<V>) -> Option<Self> {
-        let axis = layout::pipe_axis(scenario).filter(|&axis| scenario.cells[axis] > 1)?;
-        let slices = scenario.cells[axis] as usize;
+    /// The measure for `setting`, if grains fall for ever along a periodic axis of several cells.
+    pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
+        let axis = layout::pipe_axis(setting).filter(|&axis| setting.grid.cells()[axis] > 1)?;
+        let slices = setting.grid.cells()[axis] as usize;
         Some(Spectrum {
             axis,
             slices,
-            time_unit: (scenario.grain.diameter / scenario.gravity.length()).sqrt(),
-            share: scenario.grain.volume::<V>() * slices as f64 / scenario.grid_size.product(),
+            time_unit: (setting.grain.diameter / setting.gravity.length()).sqrt(),
+            share: setting.grain.volume::<V>() * slices as f64 / setting.grid.size().product(),
             times: Vec::new(),
             counts: Vec::new(),
         })

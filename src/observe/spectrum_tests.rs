@@ -1,6 +1,6 @@
 use super::*;
 use crate::engine::report::Totals;
-use crate::observe::testing::{Bed, assert_resumes, figure_of, scenario_of};
+use crate::observe::testing::{Bed, assert_resumes, figure_of, setting_of};
 use crate::random::{Phase, Stream, Streams};
 use glam::{DVec2, DVec3};
 
@@ -8,14 +8,14 @@ const SLICES: usize = 40;
 
 /// A pipe in which √(d/g) = 2, so that samples are 0.1 apart.
 fn pipe() -> Bed<DVec2> {
-    let mut bed = scenario_of(DVec2::new(2.0, 2.0 * SLICES as f64), [1, SLICES as u32, 1]);
-    bed.scenario.gravity = DVec2::new(0.0, -0.25);
+    let mut bed = setting_of(DVec2::new(2.0, 2.0 * SLICES as f64), [1, SLICES as u32, 1]);
+    bed.setting.gravity = DVec2::new(0.0, -0.25);
     bed
 }
 
 /// A spectrum that has seen `series` of each slice, sampled as it wants.
 fn of_series(samples: usize, mut series: impl FnMut(usize) -> Vec<u32>) -> Spectrum {
-    let mut spectrum = Spectrum::new(&pipe().scenario).unwrap();
+    let mut spectrum = Spectrum::new(&pipe().setting).unwrap();
     spectrum.times = (0..samples).map(|k| 0.1 * k as f64).collect();
     let by_slice: Vec<Vec<u32>> = (0..SLICES).map(&mut series).collect();
     spectrum.counts = (0..samples).flat_map(|k| by_slice.iter().map(move |slice| slice[k])).collect();
@@ -71,7 +71,7 @@ fn parseval_counts_the_variance_once() {
 
 #[test]
 fn a_power_law_gives_its_exponent() {
-    let spectrum = Spectrum::new(&pipe().scenario).unwrap();
+    let spectrum = Spectrum::new(&pipe().setting).unwrap();
     let frequencies: Vec<f64> = (1..1500).map(|k| f64::from(k) / 300.0).collect();
     // Outside the range, 0.15 … 2.5 per time here, the power does not matter.
     let power: Vec<f64> =
@@ -137,7 +137,7 @@ fn a_run_too_short_or_too_coarse_has_no_slope() {
 #[test]
 fn it_samples_a_gas() {
     let bed = pipe();
-    let mut measure = Spectrum::new(&bed.scenario).unwrap();
+    let mut measure = Spectrum::new(&bed.setting).unwrap();
     assert_eq!(Measure::<DVec2>::cadence(&measure), Cadence::Every(0.1));
     let gas = bed.gas(0.5, vec![DVec2::new(1.0, 5.0), DVec2::new(1.5, 4.5)], vec![DVec2::ZERO; 2]);
     let totals = Totals::default();
@@ -150,8 +150,8 @@ fn it_samples_a_gas() {
 
 #[test]
 fn it_resumes() {
-    let mut bed = scenario_of(DVec3::new(4.0, 4.0, 20.0), [2, 2, 10]);
-    bed.scenario.gravity = DVec3::new(0.0, 0.0, 1.0);
-    let make = || Box::new(Spectrum::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec3>>;
+    let mut bed = setting_of(DVec3::new(4.0, 4.0, 20.0), [2, 2, 10]);
+    bed.setting.gravity = DVec3::new(0.0, 0.0, 1.0);
+    let make = || Box::new(Spectrum::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec3>>;
     assert_resumes(make, &bed.random_states(60, 200));
 }

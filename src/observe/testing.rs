@@ -1,68 +1,34 @@
 //! Places and states made by hand, for the tests of measures.
 
 use super::measure::{Measure, Snapshot};
+use super::setting::Setting;
 use crate::engine::report::Totals;
 use crate::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
-use crate::law::restitution::{Constant, RestitutionLaw};
 use crate::matter::clock::Clock;
 use crate::matter::gas::Gas;
 use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 use crate::random::{Phase, Streams};
-use crate::scenario::model::*;
 use crate::space::Vector;
 
-/// A scenario to be changed at will.
+/// A setting to be changed at will.
 pub(crate) struct Bed<V: Vector> {
-    pub(crate) scenario: Scenario<V>,
+    pub(crate) setting: Setting<V>,
 }
 
 /// A gas and what happened to it.
 pub(crate) type State<V> = (Gas<V>, Totals<V>);
 
 /// A periodic box without gravity; grains of unit diameter and mass.
-pub(crate) fn scenario_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
-    let hsmc = HsmcRules {
-        maximum_volume_fraction: V::RANDOM_CLOSE_PACKING,
-        cell_restitution: 0.9,
-        sweeps: 4,
-        admission: Admission::Strict,
-        displacement: DisplacementRule::Paired,
-    };
-    let engine = EngineChoice {
-        kind: EngineKind::Hsmc,
-        time_step: TimeStep::Fixed(0.1),
-        enskog_factor: EnskogFactor::Local,
-        transfer: Transfer::Corrected,
-        hsmc,
-    };
-    let initial = Initial {
-        positions: InitialPositions::Random,
-        velocities: InitialVelocities::Rest,
-        equilibrate: 0.0,
-    };
-    let record = RecordPlan { spacing: Spacing::Ends, points: None, measures: None, states: 0, from: None };
+pub(crate) fn setting_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
     Bed {
-        scenario: Scenario {
-            name: "test".into(),
-            title: "Test".into(),
-            source_text: String::new(),
-            seed: 1,
+        setting: Setting {
             gravity: V::ZERO,
-            engine,
             size,
-            grid_origin: V::ZERO,
-            grid_size: size,
-            cells,
+            grid: Grid::new(V::ZERO, size, &cells, &[true; 3]),
             boundary: Boundary::periodic(),
             grain: Grain { diameter: 1.0, mass: 1.0 },
-            restitution: RestitutionLaw::Constant(Constant(0.9)),
-            count: 0,
-            initial,
-            source: None,
-            run: RunLimits::default(),
-            record,
-            units: Units { length: "d".into(), mass: "m".into(), time: "t".into() },
+            is_poured: false,
         },
     }
 }
@@ -70,15 +36,15 @@ pub(crate) fn scenario_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
 impl<V: Vector> Bed<V> {
     /// Puts faces at the ends of `axis`.
     pub(crate) fn walls(&mut self, axis: usize, lower: Face<V>, upper: Face<V>) {
-        self.scenario.boundary.axes[axis] = AxisBoundary::Faces { lower, upper };
+        self.setting.boundary.axes[axis] = AxisBoundary::Faces { lower, upper };
     }
 
     /// Grains in the box at `time`.
     pub(crate) fn gas(&self, time: f64, positions: Vec<V>, velocities: Vec<V>) -> Gas<V> {
-        let scenario = &self.scenario;
-        let periodic: Vec<bool> = (0..V::DIMENSION).map(|axis| scenario.boundary.is_periodic(axis)).collect();
-        let grid = Grid::new(scenario.grid_origin, scenario.grid_size, &scenario.cells, &periodic);
-        let mut gas = Gas::new(grid, scenario.grain, positions, velocities);
+        let Setting { grid, boundary, grain, .. } = &self.setting;
+        let periodic: Vec<bool> = (0..V::DIMENSION).map(|axis| boundary.is_periodic(axis)).collect();
+        let grid = Grid::new(grid.origin(), grid.size(), &grid.cells(), &periodic);
+        let mut gas = Gas::new(grid, *grain, positions, velocities);
         gas.clock = Clock::restored(time, 0.0);
         gas
     }
@@ -89,7 +55,7 @@ impl<V: Vector> Bed<V> {
         let mut totals = Totals::default();
         (0..states as u64)
             .map(|k| {
-                let positions = random_positions(k, grains, self.scenario.size);
+                let positions = random_positions(k, grains, self.setting.size);
                 let gas = self.gas(k as f64, positions, random_velocities(1000 + k, grains));
                 if k > 0 {
                     totals.collisions_per_particle += random.uniform();

@@ -3,9 +3,9 @@
 use super::layout::{self, Shear};
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure};
+use super::setting::Setting;
 use super::slices;
 use super::units::{LENGTH, VELOCITY, column};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 use crate::statistics::{Estimate, StraightLine, blocks, standard_error, straight_line};
 
@@ -24,11 +24,11 @@ pub struct VelocityProfile<V> {
 }
 
 impl<V: Vector> VelocityProfile<V> {
-    /// The measure for `scenario`, if its walls move past each other.
-    pub fn new(scenario: &Scenario<V>) -> Option<Self> {
-        let shear = layout::shear(scenario)?;
-        let slices = scenario.cells[shear.axis] as usize;
-        let height = scenario.size[shear.axis];
+    /// The measure for `setting`, if its walls move past each other.
+    pub fn new(setting: &Setting<V>) -> Option<Self> {
+        let shear = layout::shear(setting)?;
+        let slices = setting.grid.cells()[shear.axis] as usize;
+        let height = setting.size[shear.axis];
         Some(VelocityProfile { shear, height, slices, samples: Samples::new(2 * slices) })
     }
 
@@ -106,11 +106,11 @@ fn columns() -> Vec<Column> {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
-    use crate::observe::testing::{Bed, State, assert_resumes, figure_of, rough, scenario_of, show};
+    use crate::observe::testing::{Bed, State, assert_resumes, figure_of, rough, setting_of, show};
     use glam::{DVec2, DVec3};
 
     fn sheared() -> Bed<DVec2> {
-        let mut bed = scenario_of(DVec2::splat(40.0), [20, 20, 1]);
+        let mut bed = setting_of(DVec2::splat(40.0), [20, 20, 1]);
         bed.walls(1, rough(DVec2::new(-0.5, 0.0)), rough(DVec2::new(0.5, 0.0)));
         bed
     }
@@ -133,7 +133,7 @@ mod tests {
                 flowing(&bed, f64::from(k), move |y| if k < 10 { 3.0 } else { slipping(y) })
             })
             .collect();
-        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        let mut measure = VelocityProfile::new(&bed.setting).unwrap();
         let (slope, error) = figure_of(&mut measure, &states, 10.0, "velocity_profile_slope");
         assert!((slope.unwrap() - 1.0).abs() < 1e-14, "{slope:?}");
         assert!(error.unwrap() < 1e-14);
@@ -152,7 +152,7 @@ mod tests {
         let states: Vec<_> = (0..10)
             .map(|k| flowing(&bed, f64::from(k), move |y| (0.9 + 0.2 * f64::from(k % 2)) * (y / 40.0)))
             .collect();
-        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        let mut measure = VelocityProfile::new(&bed.setting).unwrap();
         let (slope, error) = figure_of(&mut measure, &states, 0.0, "velocity_profile_slope");
         assert!((slope.unwrap() - 1.0).abs() < 1e-13);
         assert!((error.unwrap() - 0.1 / 3.0).abs() < 1e-13);
@@ -160,13 +160,13 @@ mod tests {
 
     #[test]
     fn it_follows_the_walls_in_three_dimensions() {
-        let mut bed = scenario_of(DVec3::splat(20.0), [10; 3]);
-        assert!(VelocityProfile::new(&bed.scenario).is_none());
+        let mut bed = setting_of(DVec3::splat(20.0), [10; 3]);
+        assert!(VelocityProfile::new(&bed.setting).is_none());
         bed.walls(2, rough(DVec3::ZERO), rough(DVec3::new(0.0, -3.0, 0.0)));
         let positions: Vec<DVec3> = (0..10).map(|k| DVec3::splat(f64::from(2 * k + 1))).collect();
         let velocities = positions.iter().map(|p| DVec3::new(9.0, -3.0 * p.z / 20.0, 9.0)).collect();
         let state = (bed.gas(1.0, positions, velocities), Totals::default());
-        let mut measure = VelocityProfile::new(&bed.scenario).unwrap();
+        let mut measure = VelocityProfile::new(&bed.setting).unwrap();
         show(&mut measure, &state);
         let (slope, error) = figure_of(&mut measure, &[state], 0.0, "velocity_profile_slope");
         assert!((slope.unwrap() - 1.0).abs() < 1e-14);
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn it_resumes() {
         let bed = sheared();
-        let make = || Box::new(VelocityProfile::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec2>>;
+        let make = || Box::new(VelocityProfile::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec2>>;
         assert_resumes(make, &bed.random_states(30, 300));
     }
 }

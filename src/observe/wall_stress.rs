@@ -3,8 +3,8 @@
 use super::layout;
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_rate};
+use super::setting::Setting;
 use super::units::{column, stress};
-use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
 /// Shear and normal stress on the walls of one axis.
@@ -26,22 +26,22 @@ pub struct WallStress<V> {
 }
 
 impl<V: Vector> WallStress<V> {
-    /// The measure for `scenario`, if it has walls.
-    pub fn new(scenario: &Scenario<V>) -> Option<Self> {
-        let shear = layout::shear(scenario);
-        let pipe = layout::pipe_axis(scenario);
-        let walls_on = |axis: usize| scenario.boundary.walls().filter(|wall| wall.0 == axis).count();
-        let axis = match (shear, layout::gravity_axis(scenario)) {
+    /// The measure for `setting`, if it has walls.
+    pub fn new(setting: &Setting<V>) -> Option<Self> {
+        let shear = layout::shear(setting);
+        let pipe = layout::pipe_axis(setting);
+        let walls_on = |axis: usize| setting.boundary.walls().filter(|wall| wall.0 == axis).count();
+        let axis = match (shear, layout::gravity_axis(setting)) {
             (Some(shear), _) => shear.axis,
             (None, Some(axis)) if pipe.is_none() && walls_on(axis) > 0 => axis,
-            _ => scenario.boundary.walls().next()?.0,
+            _ => setting.boundary.walls().next()?.0,
         };
         // The lower wall is dragged with the gas, that is along the upper wall, and the other way round.
         let along = shear.map(|shear| [shear.direction, -shear.direction]).or_else(|| {
-            let falling = pipe.map(|pipe| V::along(pipe, scenario.gravity[pipe].signum()))?;
+            let falling = pipe.map(|pipe| V::along(pipe, setting.gravity[pipe].signum()))?;
             Some([falling, falling])
         });
-        let area = scenario.size.product() / scenario.size[axis];
+        let area = setting.size.product() / setting.size[axis];
         let weight = 1.0 / (area * walls_on(axis) as f64);
         // Every total is zero at time 0, whether or not anyone looks then.
         let samples = Samples::new(2).with(0.0, &[0.0; 2]);
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::engine::report::Totals;
     use crate::law::boundary::Face;
-    use crate::observe::testing::{Bed, State, assert_resumes, figure_of, rough, scenario_of, show, smooth};
+    use crate::observe::testing::{Bed, State, assert_resumes, figure_of, rough, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
     /// Walls get `lower` and `upper` per time unit, and once twice as much.
@@ -126,11 +126,11 @@ mod tests {
 
     #[test]
     fn stress_is_momentum_over_time_and_area() {
-        let mut bed = scenario_of(DVec3::new(2.0, 5.0, 8.0), [2, 2, 2]);
+        let mut bed = setting_of(DVec3::new(2.0, 5.0, 8.0), [2, 2, 2]);
         bed.walls(2, rough(DVec3::new(0.0, -1.0, 0.0)), rough(DVec3::new(0.0, 1.0, 0.0)));
         // Area 10; shear (30 + 50)/2, normal (20 + 40)/2.
         let states = pushed(&bed, 2, DVec3::new(7.0, 30.0, -20.0), DVec3::new(0.0, -50.0, 40.0));
-        let mut measure = WallStress::new(&bed.scenario).unwrap();
+        let mut measure = WallStress::new(&bed.setting).unwrap();
         for (k, state) in states.iter().enumerate() {
             let values = show(&mut measure, state);
             let factor = if k == 11 { 2.0 } else { 1.0 };
@@ -150,11 +150,11 @@ mod tests {
 
     #[test]
     fn a_pipe_is_dragged_along_gravity_on_both_sides() {
-        let mut bed = scenario_of(DVec2::new(6.0, 10.0), [3, 5, 1]);
+        let mut bed = setting_of(DVec2::new(6.0, 10.0), [3, 5, 1]);
         bed.walls(0, smooth(), smooth());
-        bed.scenario.gravity = DVec2::new(0.0, -2.0);
+        bed.setting.gravity = DVec2::new(0.0, -2.0);
         let states = pushed(&bed, 0, DVec2::new(-10.0, -20.0), DVec2::new(10.0, -40.0));
-        let mut measure = WallStress::new(&bed.scenario).unwrap();
+        let mut measure = WallStress::new(&bed.setting).unwrap();
         let (shear, _) = figure_of(&mut measure, &states, 11.0, "wall_shear_stress");
         let (normal, _) = figure_of(&mut measure, &states, 11.0, "wall_normal_stress");
         assert!((shear.unwrap() - 3.0).abs() < 1e-12);
@@ -163,12 +163,12 @@ mod tests {
 
     #[test]
     fn a_single_floor_bears_all() {
-        let mut bed = scenario_of(DVec2::new(6.0, 10.0), [3, 5, 1]);
+        let mut bed = setting_of(DVec2::new(6.0, 10.0), [3, 5, 1]);
         bed.walls(0, smooth(), smooth());
         bed.walls(1, smooth(), Face::Open);
-        bed.scenario.gravity = DVec2::new(0.0, -1.0);
+        bed.setting.gravity = DVec2::new(0.0, -1.0);
         let states = pushed(&bed, 1, DVec2::new(0.0, -12.0), DVec2::ZERO);
-        let mut measure = WallStress::new(&bed.scenario).unwrap();
+        let mut measure = WallStress::new(&bed.setting).unwrap();
         let (normal, _) = figure_of(&mut measure, &states, 11.0, "wall_normal_stress");
         assert!((normal.unwrap() - 2.0).abs() < 1e-12);
         assert_eq!(figure_of(&mut measure, &states, 11.0, "wall_shear_stress"), (None, None));
@@ -176,9 +176,9 @@ mod tests {
 
     #[test]
     fn it_resumes() {
-        let mut bed = scenario_of(DVec2::splat(8.0), [4, 4, 1]);
+        let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
         bed.walls(1, rough(-DVec2::X), rough(DVec2::X));
-        let make = || Box::new(WallStress::new(&bed.scenario).unwrap()) as Box<dyn Measure<DVec2>>;
+        let make = || Box::new(WallStress::new(&bed.setting).unwrap()) as Box<dyn Measure<DVec2>>;
         assert_resumes(make, &bed.random_states(30, 10));
     }
 }

@@ -2,6 +2,7 @@
 
 use super::model::{AnyScenario, EngineKind, Scenario};
 use crate::matter::grid::Grid;
+use crate::observe::setting::Setting;
 use crate::space::Vector;
 
 impl<V: Vector> Scenario<V> {
@@ -9,6 +10,18 @@ impl<V: Vector> Scenario<V> {
     pub fn grid(&self) -> Grid<V> {
         let periodic: [bool; 3] = std::array::from_fn(|axis| self.boundary.is_periodic(axis));
         Grid::new(self.grid_origin, self.grid_size, &self.cells, &periodic)
+    }
+
+    /// What measures may know of it.
+    pub fn setting(&self) -> Setting<V> {
+        Setting {
+            gravity: self.gravity,
+            size: self.size,
+            grid: self.grid(),
+            boundary: self.boundary,
+            grain: self.grain,
+            is_poured: self.source.is_some(),
+        }
     }
 
     /// The true volume fraction at the start, N V_p over the volume of `domain.size`.

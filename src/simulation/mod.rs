@@ -89,7 +89,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 
     fn assemble(scenario: &'s Scenario<V>, gas: Gas<V>, beginning: Beginning<V>) -> Self {
-        let measures = measures(scenario);
+        let measures = measures(&scenario.setting());
         Simulation {
             scenario,
             gas,
