@@ -55,8 +55,8 @@ pub struct EngineState {
 pub enum EngineError {
     /// A fixed step is longer than a cell allows.
     #[error(
-        "the fixed time step {step} is too long at t = {time}: a grain at speed {speed} may cross at most half \
-         a cell per step; `engine.time_step.fixed` = {longest} would do here"
+        "the fixed time step {step} is too long at t = {time}: nothing may cross more than a cell per step, \
+         and the fastest grain or wall moves at {speed}; `engine.time_step.fixed` = {longest} would just do here"
     )]
     StepTooLong {
         /// The step asked for [time].

@@ -13,8 +13,11 @@ use crate::matter::gas::Gas;
 use crate::random::Phase;
 use crate::space::Vector;
 
-/// Grains may cross at most this share of a cell per step where a jump over a cell could matter.
+/// An adaptive step lets grains cross at most this share of a cell where a jump over a cell could matter.
 const LARGEST_CROSSING: f64 = 0.5;
+
+/// A fixed step is obeyed as long as no grain can jump over a cell.
+const LARGEST_FIXED_CROSSING: f64 = 1.0;
 
 /// Below this mean occupancy, cells hold too few pairs to tell their temperature.
 const FEWEST_GRAINS_PER_CELL: f64 = 0.5;
@@ -29,7 +32,11 @@ pub(crate) fn time_step<V: Vector, R: Restitution>(
 ) -> Result<(f64, bool), EngineError> {
     let speed = state.largest_speed.max(laws.boundary.largest_wall_speed());
     let side = gas.grid().shortest_side();
-    let longest = if jumps_matter { longest_step(laws, side, speed) } else { f64::INFINITY };
+    let allowed = match choice {
+        TimeStep::Fixed(_) => LARGEST_FIXED_CROSSING,
+        TimeStep::CollisionsPerParticle(_) | TimeStep::Crossing(_) => LARGEST_CROSSING,
+    };
+    let longest = if jumps_matter { longest_step(laws, allowed, side, speed) } else { f64::INFINITY };
     let wish = match choice {
         TimeStep::Fixed(step) if step > longest => {
             return Err(EngineError::StepTooLong { step, longest, speed, time: gas.time() });
@@ -54,11 +61,11 @@ pub(crate) fn time_step<V: Vector, R: Restitution>(
     }
 }
 
-/// ½ min(L/v_max, √(2L/|g|)).
-fn longest_step<V: Vector, R: Restitution>(laws: &Laws<V, R>, side: f64, speed: f64) -> f64 {
+/// The `share` of min(L/v_max, √(2L/|g|)).
+fn longest_step<V: Vector, R: Restitution>(laws: &Laws<V, R>, share: f64, side: f64, speed: f64) -> f64 {
     let gravity = laws.gravity.length();
     let falling = if gravity > 0.0 { (2.0 * side / gravity).sqrt() } else { f64::INFINITY };
-    LARGEST_CROSSING * (side / speed).min(falling)
+    share * (side / speed).min(falling)
 }
 
 /// What the step after next needs to know, from what this one added up.
