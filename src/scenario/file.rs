@@ -36,9 +36,7 @@ pub(super) fn fetch(source: &str) -> Result<(String, String), ScenarioError> {
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        wrong(format!(
-            "is not UTF-8 text (byte {at}); a scenario is a TOML text"
-        ))
+        wrong(format!("is not UTF-8 text (byte {at}); a scenario is a TOML text"))
     })?;
     Ok((stem(path), text))
 }
