@@ -134,7 +134,8 @@ pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
 
 /// Whether a mean over the second half stands for more than itself.
 pub(super) fn is_steady(evidence: &Evidence<'_>, name: &str) -> bool {
-    has_meaning(evidence, name) && doubt(evidence, name).is_none()
+    let is_mean = KNOWN.iter().find(|known| known.0 == name).is_none_or(|known| known.2);
+    is_mean && has_meaning(evidence, name) && doubt(evidence, name).is_none()
 }
 
 /// Whether full cells keep grains away from the floor that carries them.

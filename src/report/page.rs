@@ -28,12 +28,15 @@ pub(super) fn page(log: &RunLog, summary: &Map<String, Value>) -> String {
     body.push_str(&section("The run in motion", &grains(&frames, &scene, &setup)));
     let references = references(&evidence);
     body.push_str(&section("Beside theory and literature", &references));
+    let density = wave_plots::plots(&evidence);
     let mut own = heap_plots::plots(&evidence);
-    own.extend(wave_plots::plots(&evidence));
     own.extend(shear_plots::plots(&evidence));
+    let mut other = other_plots::plots(&evidence);
+    // The density of a gas left to itself is no wave and no bed.
+    if setup.is_undriven() { &mut other } else { &mut own }.extend(density);
     body.push_str(&section("What the scenario is about", &plots(&own)));
     body.push_str(&section("Energy and collisions", &plots(&energy_plots::plots(&evidence))));
-    body.push_str(&section("Everything else that was recorded", &plots(&other_plots::plots(&evidence))));
+    body.push_str(&section("Everything else that was recorded", &plots(&other)));
     body.push_str(&section("How it was made", &parameters::html(&evidence)));
     let version = log.metadata.get("version").map_or_else(String::new, |v| format!(" {}", escape(v)));
     format!(

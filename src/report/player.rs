@@ -68,10 +68,11 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
         "units": { "time": if setup.units[2] == "time" { "" } else { &setup.units[2] }, "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
     });
     let hint = if scene.is_deep { " Drag, or the arrow keys with Shift, turn the box." } else { "" };
-    let aspect = if scene.is_deep { 1.5 } else { scene.aspect() };
+    // The canvas of about 1000 pixels has a margin of 7 around the box.
+    let aspect = if scene.is_deep { 1.5 } else { 1000.0 / (986.0 / scene.aspect() + 14.0) };
     format!(
         include_str!("player.html"),
-        aspect = aspect.clamp(0.4, 14.0),
+        aspect = aspect.clamp(0.4, 20.0),
         last = frames.len() - 1,
         gradient = ColourMap::Speed.gradient(),
         caption = escape(&format!("{}{hint}", caption(frames, share, scene))),
