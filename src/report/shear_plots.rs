@@ -45,7 +45,7 @@ fn ranges(law: &[[f64; 2]], measured: &[[f64; 2]]) -> [Option<[f64; 2]>; 2] {
     let [least, most] = velocities.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], v| [l.min(v), m.max(v)]);
     let room = 0.06 * (most - least);
     let is_range = law[0][0] < law[1][0] && room > 0.0;
-    [is_range.then(|| [law[0][0], law[1][0]]), is_range.then(|| [least - room, most + room])]
+    [is_range.then(|| [law[0][0], law[1][0]]), is_range.then_some([least - room, most + room])]
 }
 
 /// The straight line from wall to wall.
