@@ -99,11 +99,85 @@ fn each_scenario_shows_what_it_is_about() {
 }
 
 #[test]
-fn a_run_says_what_it_is_not_compared_with() {
+fn references_say_what_they_are() {
+    assert!(page(&shear()).contains("References are closed forms"));
+}
+
+/// The text of the first element of the class.
+fn cards(page: &str) -> &str {
+    let from = page.find("<dl class=\"figures\">").map_or(0, |start| start);
+    let length = page[from..].find("</header>").unwrap_or(page.len() - from);
+    &page[from..from + length]
+}
+
+#[test]
+fn figures_come_first_and_counters_are_folded() {
+    let mut sample = heap();
+    let counters = [("candidates", 32_454_860), ("cell_capacity", 4), ("removed", 0)];
+    counters
+        .iter()
+        .for_each(|(name, value)| drop(sample.summary.insert((*name).to_owned(), (*value).into())));
+    sample.summary.insert("centre_of_mass_mean_height".to_owned(), 12.1067.into());
+    sample.summary.insert("centre_of_mass_mean_height_standard_error".to_owned(), 0.41.into());
+    let page = page(&sample);
+    let cards = cards(&page);
+    let place = |text: &str| cards.find(text).unwrap_or_else(|| panic!("{text}"));
+    assert!(
+        place("heap slope") < place("centre of mass height")
+            && place("mean height") < place("computing time")
+    );
+    assert!(cards.contains("12.11 ± 0.41 <small>d</small>"));
+    assert!(!cards.contains("candidates") && !cards.contains("removed"));
+    assert!(page.contains("<td>candidates</td><td>32\u{202f}454\u{202f}860</td>"));
+}
+
+#[test]
+fn means_of_what_is_not_steady_are_not_shown() {
+    let mut sample = cooling();
+    let pressure = [("pressure", 0.0103), ("pressure_standard_error", 0.001)];
+    pressure
+        .iter()
+        .for_each(|(name, value)| drop(sample.summary.insert((*name).to_owned(), (*value).into())));
+    assert!(!cards(&page(&sample)).contains("<dt>pressure"));
+    sample.log.series.iter_mut().for_each(|row| row[2] = 1.0);
+    assert!(cards(&page(&sample)).contains("<dt>pressure"));
+}
+
+#[test]
+fn a_run_too_short_for_its_figures_says_so() {
     let mut sample = shear();
-    assert!(page(&sample).contains("is not part of this run"));
-    sample.summary.insert("engine".to_owned(), "event-driven".into());
-    assert!(!page(&sample).contains("is not part of this run"));
+    assert!(!cards(&page(&sample)).contains("class=\"doubt\""));
+    sample.summary.insert("velocity_profile_r_squared".to_owned(), 0.02.into());
+    assert!(cards(&page(&sample)).contains("not steady"));
+    sample.summary.insert("velocity_profile_r_squared".to_owned(), 0.99.into());
+    sample.summary.insert("collisions_per_particle".to_owned(), 2.0.into());
+    assert!(cards(&page(&sample)).contains("too short to be steady"));
+}
+
+#[test]
+fn the_equation_of_state_knows_the_transfer() {
+    let expected = |key: &str| {
+        let mut sample = cooling();
+        sample.log.scenario =
+            sample.log.scenario.replace("kind = \"hsmc\"\n", &format!("kind = \"hsmc\"\n{key}"));
+        page(&sample)
+    };
+    // 1 + 2r ν g and 1 + (1 + r) ν g at r = 0.8, ν = 0.2501.
+    assert!(expected("").contains("1.634 ± 3 %"), "2r");
+    assert!(expected("transfer = \"corrected\"\n").contains("1.713 ± 3 %"), "1 + r");
+}
+
+#[test]
+fn waves_are_for_pipes_and_floors_for_heaps() {
+    let waves = "Waves are bright bands";
+    assert!(page(&pipe()).contains(waves) && page(&pipe()).contains("Gravity points to the left"));
+    for sample in [heap(), shear(), cooling()] {
+        assert!(!page(&sample).contains(waves), "{}", sample.name);
+    }
+    assert!(
+        page(&heap()).contains("dots hide behind each other")
+            && page(&heap()).contains("Gravity points down")
+    );
 }
 
 #[test]

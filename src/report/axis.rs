@@ -9,8 +9,17 @@ pub(super) enum Scale {
     Linear,
     /// Even factors; values must be positive.
     Logarithmic,
-    /// Logarithmic when all values are positive and span more than one and a half decades.
-    Automatic,
+}
+
+impl Scale {
+    /// Of an energy, a temperature, a power: logarithmic when all values after the first twentieth of the points are
+    /// positive and span more than one and a half decades.
+    pub(super) fn of_energy(points: &[[f64; 2]]) -> Self {
+        let settled = &points[points.len() / 20..];
+        let (least, most) = range(settled.iter().map(|p| p[1]).filter(|v| v.is_finite()));
+        let spans = least > 0.0 && most > least * 10f64.powf(1.5);
+        if spans { Self::Logarithmic } else { Self::Linear }
+    }
 }
 
 /// An axis with its range.
@@ -39,11 +48,9 @@ impl Axis {
         let finite = values.filter(|v| v.is_finite());
         let positive = finite.clone().filter(|v| *v > 0.0);
         let (least, most) = range(positive);
-        let all_positive = finite.clone().all(|v| v > 0.0);
         let logarithmic = match scale {
             Scale::Linear => false,
             Scale::Logarithmic => least < most,
-            Scale::Automatic => all_positive && most > least * 10f64.powf(1.5),
         };
         if logarithmic {
             let room = if exact { 1.0 } else { (most / least).powf(0.04) };
@@ -172,17 +179,21 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_follows_the_span() {
-        let over = |values: &[f64]| Axis::over(values.iter().copied(), Scale::Automatic, false);
-        assert!(over(&[1.0, 100.0]).logarithmic);
-        assert!(!over(&[1.0, 10.0]).logarithmic);
-        assert!(!over(&[0.0, 100.0]).logarithmic);
+    fn the_scale_of_energies_follows_the_span() {
+        let of = |values: &[f64]| Scale::of_energy(&values.iter().map(|v| [0.0, *v]).collect::<Vec<_>>());
+        assert_eq!(of(&[1.0, 100.0]), Scale::Logarithmic);
+        assert_eq!(of(&[1.0, 10.0]), Scale::Linear);
+        assert_eq!(of(&[0.0, 100.0]), Scale::Linear);
+        // A start that is forgotten at once does not count.
+        let mut values = [1.0; 40];
+        values[0] = 1e-16;
+        assert_eq!(of(&values), Scale::Linear);
     }
 
     #[test]
     fn empty_and_constant_data_have_an_axis() {
         for values in [&[][..], &[f64::NAN], &[3.0, 3.0], &[0.0]] {
-            let axis = Axis::over(values.iter().copied(), Scale::Automatic, false);
+            let axis = Axis::over(values.iter().copied(), Scale::Linear, false);
             assert!(axis.upper > axis.lower && !axis.ticks(5).is_empty());
         }
     }

@@ -98,22 +98,26 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
     let haff = Haff::of(evidence);
     if let Some((column, described)) = evidence.column("temperature") {
         plots.push(against_time(evidence, column, haff, evidence.setup.with_unit("T", described.unit)));
-        if let Some((collisions, _)) = evidence.column("collisions_per_particle") {
+        // Where grains lie or are driven, collisions are no clock.
+        if let Some((collisions, _)) = evidence.column("collisions_per_particle")
+            && evidence.setup.is_undriven()
+        {
             let points = evidence.series(collisions, column);
             plots.extend(against_collisions(points, haff, evidence.setup.with_unit("T", described.unit)));
         }
     }
     if let Some((column, described)) = evidence.column("kinetic_energy") {
         let points = evidence.series(0, column);
-        plots.push(Plot {
+        let plot = Plot {
             title: "Kinetic energy".to_owned(),
             x_label: evidence.setup.time_label(),
             y_label: evidence.setup.with_unit("E", described.unit),
             x_scale: scale_of_times(&points),
-            y_scale: Scale::Automatic,
+            y_scale: Scale::of_energy(&points),
             curves: vec![Curve::new("", points, Stroke::Line, Ink::Series(0))],
             ..Plot::default()
-        });
+        };
+        plots.push(plot.focused());
     }
     if let Some((column, _)) = evidence.column("collisions_per_particle") {
         let points = evidence.series(0, column);
@@ -132,13 +136,16 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
 fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, label: String) -> Plot {
     let points = evidence.series(0, column);
     let mut plot = Plot {
-        title: "Granular temperature against time".to_owned(),
+        title: "Granular temperature".to_owned(),
         x_label: evidence.setup.time_label(),
         y_label: label,
         x_scale: scale_of_times(&points),
-        y_scale: Scale::Automatic,
+        y_scale: Scale::of_energy(&points),
         ..Plot::default()
     };
+    if let Some([count, rate]) = evidence.setup.source {
+        plot.caption = format!("The last grain is poured at about t = {}.", number(count / rate, 3));
+    }
     if let Some(haff) = haff {
         let law = points.iter().map(|p| [p[0], haff.at_time(p[0])]).collect();
         plot.curves.push(Curve::new("Haff’s law, Sonine-corrected", law, Stroke::Dashed, Ink::Text));
@@ -148,7 +155,7 @@ fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, labe
         );
     }
     plot.curves.insert(0, Curve::new("measured", points, Stroke::Line, Ink::Series(0)));
-    plot
+    plot.focused()
 }
 
 fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) -> Option<Plot> {
@@ -159,7 +166,7 @@ fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) 
         title: "Granular temperature against collisions".to_owned(),
         x_label: "collisions per particle, 2C/N".to_owned(),
         y_label: label,
-        y_scale: Scale::Automatic,
+        y_scale: Scale::of_energy(&points),
         ..Plot::default()
     };
     if let Some(haff) = haff {
@@ -173,7 +180,7 @@ fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) 
 }
 
 /// Recordings spread by factors want an axis of factors; the one at time 0 then stays outside.
-fn scale_of_times(points: &[[f64; 2]]) -> Scale {
+pub(super) fn scale_of_times(points: &[[f64; 2]]) -> Scale {
     let times: Vec<f64> = points.iter().map(|p| p[0]).filter(|t| *t > 0.0).collect();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
         return Scale::Linear;

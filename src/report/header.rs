@@ -6,40 +6,11 @@ use serde_json::Value;
 
 use super::escape::escape;
 use super::evidence::Evidence;
-use super::number::{in_words, number, with_error};
+use super::figures;
+use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
 use super::reference::{Comparison, comparisons};
-
-/// Keys of the summary that every run has; all others are figures of its scenario.
-pub(super) const COMMON: [&str; 27] = [
-    "scenario",
-    "engine",
-    "dimension",
-    "particles_initial",
-    "particles_final",
-    "volume_fraction",
-    "seed",
-    "threads",
-    "version",
-    "numerics",
-    "steps",
-    "steps_capped",
-    "events",
-    "collisions",
-    "collisions_per_particle",
-    "simulated_time",
-    "end_reason",
-    "interrupted",
-    "kinetic_energy_initial",
-    "kinetic_energy_final",
-    "temperature",
-    "momentum_drift",
-    "wall_seconds",
-    "particle_steps_per_second",
-    "events_per_second",
-    "peak_memory_bytes",
-    "state_hash",
-];
+use crate::observe::measure::Dimension;
 
 /// Title, sentence, figures.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {
@@ -55,14 +26,18 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
     let references = comparisons(evidence);
-    let cards: String = own_figures(evidence).iter().map(|name| card(evidence, name, &references)).collect();
-    let common: String =
-        ["particles_final", "simulated_time", "collisions_per_particle", "temperature", "wall_seconds"]
-            .iter()
-            .map(|name| card(evidence, name, &references))
-            .collect();
-    if !(cards.is_empty() && common.is_empty()) {
-        let _ = writeln!(html, "<dl class=\"figures\">\n{cards}{common}</dl>");
+    let mut cards: String = references
+        .iter()
+        .filter(|row| row.figure.starts_with("cooling_time"))
+        .map(|row| cooling_card(evidence, row))
+        .collect();
+    cards.extend(figures::of_the_physics(evidence).iter().map(|name| card(evidence, name, &references)));
+    if !cards.is_empty() {
+        let _ = writeln!(html, "<dl class=\"figures\">\n{cards}</dl>");
+    }
+    let facts = facts(evidence);
+    if !facts.is_empty() {
+        let _ = writeln!(html, "<dl class=\"figures facts\">\n{facts}</dl>");
     }
     html.push_str("</header>\n");
     html
@@ -72,9 +47,9 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
 fn sentence(evidence: &Evidence<'_>) -> String {
     let setup = evidence.setup;
     let shape = if setup.dimension == 3 { "spheres" } else { "disks" };
-    let count = evidence.figure("particles_final").filter(|n| *n > 0.0).or(setup.count);
-    let mut text = match count {
-        Some(count) => format!("{} {shape}", number(count, 9)),
+    let grains = evidence.figure("particles_final").filter(|n| *n > 0.0).or(setup.count);
+    let mut text = match grains {
+        Some(grains) => format!("{} {shape}", count(grains)),
         None => capital(shape),
     };
     if let Some(restitution) = setup.restitution {
@@ -85,7 +60,7 @@ fn sentence(evidence: &Evidence<'_>) -> String {
         let _ = write!(text, " at volume fraction {}", number(nu, 3));
     }
     if !setup.size.is_empty() {
-        let sides: Vec<String> = setup.size.iter().map(|s| number(*s, 5)).collect();
+        let sides: Vec<String> = setup.size.iter().map(|s| number(*s, 4)).collect();
         let into = if setup.source.is_some() { "poured into" } else { "in" };
         let _ = write!(text, " {into} a box of {} {}", sides.join(" × "), setup.named(0));
     }
@@ -113,35 +88,67 @@ fn engine_name(engine: &str) -> String {
     }
 }
 
-/// Figures of the scenario itself that have a value, in the order of their names.
-pub(super) fn own_figures<'a>(evidence: &Evidence<'a>) -> Vec<&'a str> {
-    let names = evidence.summary.keys().map(String::as_str);
-    names
-        .filter(|name| !COMMON.contains(name) && !name.ends_with("_standard_error"))
-        .filter(|name| evidence.figure(name).is_some())
-        .collect()
-}
-
-/// A figure, with what is known about it below.
+/// A figure of the physics, with what is known about it below.
 fn card(evidence: &Evidence<'_>, name: &str, references: &[Comparison]) -> String {
     let Some(value) = evidence.figure(name) else {
         return String::new();
     };
-    let error = evidence.standard_error(name);
-    let is_count = value.fract() == 0.0 && value.abs() < 1e9;
-    let text = if is_count { number(value, 10) } else { with_error(value, error) };
+    let mut notes = details(evidence, name);
     // A reference of a scaled figure belongs to the table only.
-    let known = references
-        .iter()
-        .find(|r| r.figure == name)
-        .map_or_else(String::new, |r| format!("<dd>expected {}</dd>", escape(&r.expected.text())));
-    let unit = evidence.column(name).map_or_else(String::new, |(_, column)| evidence.setup.unit(column.unit));
-    let unit = match name {
-        "simulated_time" => evidence.setup.named(2),
-        "wall_seconds" => "s".to_owned(),
-        _ => unit,
+    notes.extend(
+        references.iter().find(|r| r.figure == name).map(|r| format!("expected {}", r.expected.text())),
+    );
+    let text = with_error(value, evidence.standard_error(name));
+    let doubt = figures::doubt(evidence, name);
+    entry(&in_words(name), &text, &figures::unit_of(evidence, name), &notes, doubt.as_deref())
+}
+
+/// t₀ is no figure of the summary: it is fitted here.
+fn cooling_card(evidence: &Evidence<'_>, row: &Comparison) -> String {
+    let unit = evidence.setup.unit(Dimension { time: 1, ..Dimension::default() });
+    entry(
+        "cooling time t₀",
+        &row.measured_text(),
+        &unit,
+        &[format!("expected {}", row.expected.text())],
+        None,
+    )
+}
+
+/// What belongs to a figure and would be a figure too many.
+fn details(evidence: &Evidence<'_>, name: &str) -> Vec<String> {
+    let parts: &[(&str, &str)] = match name {
+        "heap_slope" => &[("left", "heap_slope_left"), ("right", "heap_slope_right")],
+        "velocity_profile_slope" => &[("R² of the straight line", "velocity_profile_r_squared")],
+        _ => &[],
     };
-    let title = if name == "wall_seconds" { "computing time".to_owned() } else { in_words(name) };
-    let unit = if unit.is_empty() { unit } else { format!(" <small>{}</small>", escape(&unit)) };
-    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{known}</div>\n", escape(&title), escape(&text))
+    let part = |(title, key): &(&str, &str)| Some(format!("{title} {}", number(evidence.figure(key)?, 4)));
+    let parts: Vec<String> = parts.iter().filter_map(part).collect();
+    if parts.is_empty() { parts } else { vec![parts.join(", ")] }
+}
+
+/// How much was run.
+fn facts(evidence: &Evidence<'_>) -> String {
+    let energy = figures::unit_of(evidence, "temperature");
+    let facts = [
+        ("particles_final", "grains at the end", String::new()),
+        ("simulated_time", "simulated time", evidence.setup.named(2)),
+        ("collisions_per_particle", "collisions per particle", String::new()),
+        ("temperature", "granular temperature at the end", energy),
+        ("wall_seconds", "computing time", "s".to_owned()),
+    ];
+    let entries = facts.iter().filter_map(|(key, title, unit)| {
+        let value = evidence.figure(key)?;
+        let text = if *key == "particles_final" { count(value) } else { number(value, 4) };
+        Some(entry(title, &text, unit, &[], None))
+    });
+    entries.collect()
+}
+
+/// A title with its value, unit, and lines below.
+fn entry(title: &str, value: &str, unit: &str, notes: &[String], doubt: Option<&str>) -> String {
+    let unit = if unit.is_empty() { String::new() } else { format!(" <small>{}</small>", escape(unit)) };
+    let notes: String = notes.iter().map(|note| format!("<dd>{}</dd>", escape(note))).collect();
+    let doubt = doubt.map_or_else(String::new, |text| format!("<dd class=\"doubt\">{}</dd>", escape(text)));
+    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{notes}{doubt}</div>\n", escape(title), escape(value))
 }

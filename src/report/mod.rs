@@ -5,6 +5,7 @@ mod colour;
 mod energy_plots;
 mod escape;
 mod evidence;
+mod figures;
 mod fit;
 mod header;
 mod heap_plots;

@@ -84,17 +84,26 @@ fn group(text: &str) -> String {
     grouped
 }
 
-/// A value with its standard error: two digits of the error, the value to the same place.
+/// A count, whole, in groups of three digits.
+pub(super) fn count(value: f64) -> String {
+    if value.abs() < 1e15 { signed(&group(&format!("{value:.0}"))) } else { number(value, 4) }
+}
+
+/// A value with its standard error: two digits of the error and the value to the same place, but not more than
+/// four digits of the value unless the error is smaller still.
 pub(super) fn with_error(value: f64, standard_error: Option<f64>) -> String {
     let Some(error) = standard_error.filter(|e| e.is_finite() && *e > 0.0) else {
         return number(value, 4);
     };
-    let size = value.abs().max(error);
-    let place = error.log10().floor() as i32 - 1;
-    let exponent = size.log10().floor() as i32;
+    let exponent = value.abs().max(error).log10().floor() as i32;
+    let first = error.log10().floor() as i32;
+    let place = (first - 1).max(exponent - 3).min(first);
     if (-4..6).contains(&exponent) {
+        let step = 10f64.powi(place.max(0));
         let decimals = (-place).max(0) as usize;
-        return signed(&format!("{value:.decimals$} ± {error:.decimals$}"));
+        let text =
+            |x: f64| group(&format!("{:.decimals$}", if place > 0 { (x / step).round() * step } else { x }));
+        return signed(&format!("{} ± {}", text(value), text(error)));
     }
     let scale = 10f64.powi(exponent);
     let decimals = (exponent - place).max(0) as usize;
@@ -143,6 +152,17 @@ mod tests {
         assert_eq!(with_error(0.0017123, Some(0.000052)), "0.001712 ± 0.000052");
         assert_eq!(with_error(1.23456e-7, Some(2.0e-9)), "(1.235 ± 0.020) × 10⁻⁷");
         assert_eq!(with_error(2.0, None), "2");
+        assert_eq!(with_error(16149.08, Some(1173.3)), "16\u{202f}100 ± 1200");
+        assert_eq!(with_error(1.68354, Some(0.00284)), "1.684 ± 0.003");
+        assert_eq!(with_error(1.68354, Some(0.00028)), "1.6835 ± 0.0003");
+    }
+
+    #[test]
+    fn counts_are_grouped_from_five_digits_on() {
+        assert_eq!(
+            [2037.0, 12_345.0, 17_334_407.0].map(count),
+            ["2037", "12\u{202f}345", "17\u{202f}334\u{202f}407"]
+        );
     }
 
     #[test]

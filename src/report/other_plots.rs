@@ -5,7 +5,7 @@ use super::energy_plots;
 use super::evidence::{Evidence, points, spread};
 use super::number::{in_words, number, with_error};
 use super::plot::{Curve, Ink, Plot, Stroke};
-use super::{heap_plots, shear_plots, wave_plots};
+use super::{figures, heap_plots, shear_plots, wave_plots};
 use crate::observe::measure::Profile;
 
 /// Profiles that have plots of their own.
@@ -36,20 +36,37 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
     let ends = [points[0][0], points[points.len() - 1][0]];
     let mut curves = vec![Curve::new("", points, Stroke::Line, Ink::Series(0))];
     let error = evidence.standard_error(&described.name);
-    if let Some(mean) = evidence.figure(&described.name).filter(|_| error.is_some()) {
+    let is_steady = figures::is_steady(evidence, &described.name);
+    if let Some(mean) = evidence.figure(&described.name).filter(|_| error.is_some() && is_steady) {
         curves[0].name = "at every recording".to_owned();
         let steady = [0.5 * (ends[0] + ends[1]), ends[1]].map(|t| [t, mean]).to_vec();
         let name = format!("steady mean {}", with_error(mean, error));
         curves.push(Curve::new(name, steady, Stroke::Dashed, Ink::Text));
     }
-    Some(Plot {
+    let is_floor = described.name == "wall_normal_stress" && figures::is_floor_untouched(evidence.setup);
+    let caption = if is_floor {
+        "Not the weight of the packing: in HSMC a grain that full cells keep back does not touch the floor."
+    } else {
+        ""
+    };
+    let scale =
+        if is_energy_like(&described.name) { Scale::of_energy(&curves[0].points) } else { Scale::Linear };
+    let plot = Plot {
         title: capital(&in_words(&described.name)),
         x_label: evidence.setup.time_label(),
         y_label: evidence.setup.label(described),
-        y_scale: Scale::Automatic,
+        x_scale: energy_plots::scale_of_times(&curves[0].points),
+        y_scale: scale,
         curves,
+        caption: caption.to_owned(),
         ..Plot::default()
-    })
+    };
+    Some(plot.focused())
+}
+
+/// Whether decades are what a reader asks of a quantity.
+fn is_energy_like(name: &str) -> bool {
+    ["energy", "temperature", "spectrum", "power", "pressure"].iter().any(|word| name.contains(word))
 }
 
 /// A profile: every column against the first; at several times when it was taken at several.
@@ -60,6 +77,7 @@ fn profile(evidence: &Evidence<'_>, name: &str) -> Vec<Plot> {
     };
     let shown = spread(&profiles, 6);
     let is_value = |column: &usize| last.columns[*column].name != "standard_error";
+    let scale = if is_energy_like(name) { Scale::Logarithmic } else { Scale::Linear };
     let plot = |column: usize| {
         let described = &last.columns[column];
         let is_single = last.columns.len() == 2;
@@ -72,8 +90,8 @@ fn profile(evidence: &Evidence<'_>, name: &str) -> Vec<Plot> {
             title: capital(&title),
             x_label: evidence.setup.label(&last.columns[0]),
             y_label: evidence.setup.label(described),
-            x_scale: Scale::Automatic,
-            y_scale: Scale::Automatic,
+            x_scale: scale,
+            y_scale: scale,
             curves: stages(&shown, column),
             ordered: (shown.len() > 1).then(|| {
                 [format!("t = {}", number(shown[0].time, 3)), format!("t = {}", number(last.time, 3))]

@@ -6,13 +6,14 @@ use serde_json::{Map, Value};
 
 use super::escape::escape;
 use super::evidence::Evidence;
-use super::number::number;
+use super::number::{count, number};
 use super::plot::{Plot, colour_bar};
 use super::scene::Scene;
 use super::setup::Setup;
 use super::{colour::ColourMap, picture};
 use super::{
-    energy_plots, header, heap_plots, other_plots, parameters, player, reference, shear_plots, wave_plots,
+    energy_plots, figures, header, heap_plots, other_plots, parameters, player, reference, shear_plots,
+    wave_plots,
 };
 use crate::observe::measure::Dimension;
 use crate::record::contents::{Frame, RunLog};
@@ -27,12 +28,15 @@ pub(super) fn page(log: &RunLog, summary: &Map<String, Value>) -> String {
     body.push_str(&section("The run in motion", &grains(&frames, &scene, &setup)));
     let references = references(&evidence);
     body.push_str(&section("Beside theory and literature", &references));
+    let density = wave_plots::plots(&evidence);
     let mut own = heap_plots::plots(&evidence);
-    own.extend(wave_plots::plots(&evidence));
     own.extend(shear_plots::plots(&evidence));
+    let mut other = other_plots::plots(&evidence);
+    // The density of a gas left to itself is no wave and no bed.
+    if setup.is_undriven() { &mut other } else { &mut own }.extend(density);
     body.push_str(&section("What the scenario is about", &plots(&own)));
     body.push_str(&section("Energy and collisions", &plots(&energy_plots::plots(&evidence))));
-    body.push_str(&section("Everything else that was recorded", &plots(&other_plots::plots(&evidence))));
+    body.push_str(&section("Everything else that was recorded", &plots(&other)));
     body.push_str(&section("How it was made", &parameters::html(&evidence)));
     let version = log.metadata.get("version").map_or_else(String::new, |v| format!(" {}", escape(v)));
     format!(
@@ -72,7 +76,11 @@ fn grains(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
     // Flat pictures go below each other, the others side by side.
     let is_flat = scene.aspect() > 2.0 || chosen.len() < 3;
     let (class, width) = if is_flat { ("pictures", 1000.0) } else { ("pictures three", 640.0) };
-    let mut html = player::html(frames, scene, setup);
+    let mut html = String::new();
+    if let Some(way) = way_of_gravity(scene, setup) {
+        let _ = writeln!(html, "<p class=\"gravity\">{way}</p>");
+    }
+    html.push_str(&player::html(frames, scene, setup));
     let _ = writeln!(html, "<div class=\"{class}\">");
     for index in chosen {
         html.push_str(&picture_figure(frames[index], scene, scene.speeds[index], setup, width));
@@ -83,11 +91,34 @@ fn grains(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
             "<p class=\"note\">Pictures look along the second axis; farther grains are paler.</p>\n",
         );
     }
+    if figures::is_floor_untouched(setup) {
+        html.push_str(
+            "<p class=\"note\">HSMC keeps cells from overfilling, not grains from overlapping: inside a cell they may \
+             settle in the same corner, so that dots hide behind each other and stand in rows. That is the method, \
+             not the picture.</p>\n",
+        );
+    }
     let across = if scene.is_turned { scene.span(1) } else { scene.span(0) };
     if 0.5 * setup.diameter * width / across < picture::LEAST_RADIUS {
         html.push_str("<p class=\"note\">Grains are drawn larger than they are; at their size they could not be seen.</p>\n");
     }
     html
+}
+
+/// Which way grains fall on the pictures.
+fn way_of_gravity(scene: &Scene, setup: &Setup) -> Option<String> {
+    let axis = setup.gravity_axis()?;
+    let falls_up = setup.gravity[axis] > 0.0;
+    let (arrow, words) = match (axis, scene.is_deep, scene.is_turned) {
+        (1, false, true) if falls_up => ("⟶", "Gravity points to the right: the box lies on its side."),
+        (1, false, true) => ("⟵", "Gravity points to the left: the box lies on its side."),
+        (0, _, false) if falls_up => ("⟶", "Gravity points to the right."),
+        (0, _, false) => ("⟵", "Gravity points to the left."),
+        (1, false, false) | (2, true, _) if falls_up => ("↑", "Gravity points up."),
+        (1, false, false) | (2, true, _) => ("↓", "Gravity points down."),
+        _ => return None,
+    };
+    Some(format!("<b>{arrow} g</b> {words}"))
 }
 
 fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, width: f64) -> String {
@@ -96,17 +127,17 @@ fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, wid
     let moment = format!("t = {} {time}", number(frame.time, 4));
     let moment = moment.trim_end();
     let shown = frame.positions.len() as u64;
-    let count = match frame.grains.max(shown) {
-        all if all > shown => format!("{} of {} grains", number(shown as f64, 9), number(all as f64, 9)),
+    let grains = match frame.grains.max(shown) {
+        all if all > shown => format!("{} of {} grains", count(shown as f64), count(all as f64)),
         1 => "1 grain".to_owned(),
-        all => format!("{} grains", number(all as f64, 9)),
+        all => format!("{} grains", count(all as f64)),
     };
     let speed = setup.with_unit("speed", Dimension { mass: 0, length: 1, time: -1 });
     format!(
         "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption>{}</figure>\n",
         raster.address(),
         escape(&format!("The grains at {moment}, coloured by speed")),
-        escape(&format!("{moment} · {count}")),
+        escape(&format!("{moment} · {grains}")),
         colour_bar(ColourMap::Speed, "0", &number(fastest, 3), &speed),
     )
 }
@@ -139,8 +170,6 @@ fn references(evidence: &Evidence<'_>) -> String {
         );
     }
     html.push_str("</tbody>\n</table></div>\n");
-    if let Some(remark) = reference::remark(evidence) {
-        let _ = writeln!(html, "<p class=\"note\">{remark}</p>");
-    }
+    let _ = writeln!(html, "<p class=\"note\">{}</p>", reference::REMARK);
     html
 }

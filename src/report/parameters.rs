@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use super::escape::escape;
 use super::evidence::Evidence;
-use super::number::{in_words, number};
+use super::figures;
+use super::number::{count, in_words, number};
 
 /// Folded tables and the text of the scenario.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {
@@ -27,6 +28,9 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
             escape(evidence.log.scenario.trim_end())
         );
     }
+    let counters = figures::counters(evidence);
+    let counters = counters.into_iter().map(|(name, value)| (in_words(name), count(value)));
+    html.push_str(&folded("What the engine counted", counters));
     let metadata = evidence.log.metadata.iter().map(|(key, value)| (key.clone(), value.clone()));
     html.push_str(&folded("Metadata of the log", metadata));
     let summary = evidence.summary.iter().map(|(key, value)| (in_words(key), text(value)));

@@ -16,6 +16,20 @@
   const hazy = Array.from({ length: HAZES }, (_, k) => run.colours.map((colour) => blend(colour, PAPER, 0.7 * k / (HAZES - 1))));
   let current = frames.length - 1, isPlaying = false, place = current, lastTick = 0;
 
+  // Significant digits, groups of three, and powers of ten, as everywhere on the page.
+  function number(value, digits) {
+    if (value === 0) return "0";
+    const power = Number(value.toExponential(digits - 1).split("e")[1]);
+    if (power < -4 || (power >= 6 && digits < 15)) {
+      const raised = String(power).replace(/./g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻");
+      return Number((value / 10 ** power).toPrecision(digits)) + " × 10" + raised;
+    }
+    const [whole, fraction] = Number(value.toPrecision(digits)).toFixed(Math.max(0, Math.min(20, digits - 1 - power))).split(".");
+    const grouped = whole.length < 5 ? whole : whole.replace(/\B(?=(\d{3})+$)/g, "\u202f");
+    const rest = (fraction || "").replace(/0+$/, "");
+    return grouped.replace("-", "−") + (rest ? "." + rest : "");
+  }
+
   function blend(first, second, share) {
     const channel = (colour, k) => parseInt(colour.slice(1 + 2 * k, 3 + 2 * k), 16);
     const mixed = [0, 1, 2].map((k) => Math.round((1 - share) * channel(first, k) + share * channel(second, k)));
@@ -129,20 +143,6 @@
     pen.setLineDash([]);
   }
 
-  // An arrow that says where down is, where the picture alone does not.
-  function drawGravity() {
-    if (!run.turned || !run.gravity[1]) return;
-    const y = 15, way = Math.sign(run.gravity[1]), x = canvas.clientWidth / 2;
-    pen.fillStyle = pen.strokeStyle = WALL;
-    pen.lineWidth = 1.5;
-    pen.beginPath();
-    pen.moveTo(x - 16 * way, y); pen.lineTo(x + 16 * way, y);
-    pen.moveTo(x + 10 * way, y - 4); pen.lineTo(x + 16 * way, y); pen.lineTo(x + 10 * way, y + 4);
-    pen.stroke();
-    pen.font = "italic 13px Georgia, serif";
-    pen.fillText("g", x - 26 * way - 3, y + 4);
-  }
-
   function draw() {
     const ratio = window.devicePixelRatio || 1;
     const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -158,11 +158,10 @@
     if (run.deep) drawSides(project);
     drawGrains(frames[current], project, radius);
     if (!run.deep) drawSides(project);
-    drawGravity();
-    const short = (value) => String(Number(value.toPrecision(4)));
-    const time = short(run.times[current]) + (run.units.time ? "\u202f" + run.units.time : "");
-    byId("clock").textContent = "t = " + time + " · " + run.grains[current].toLocaleString("en") + " grains";
-    byId("fastest").textContent = String(Number(run.speeds[current].toPrecision(3)));
+    const time = number(run.times[current], 4) + (run.units.time ? "\u202f" + run.units.time : "");
+    const grains = run.grains[current];
+    byId("clock").textContent = "t = " + time + " · " + number(grains, 15) + (grains === 1 ? " grain" : " grains");
+    byId("fastest").textContent = number(run.speeds[current], 3);
     byId("speed-unit").textContent = "speed" + run.units.speed;
     scrub.setAttribute("aria-valuetext", "time " + time);
   }

@@ -13,18 +13,28 @@ use crate::record::contents::Frame;
 
 /// Frames beyond these are left out, evenly.
 const MOST_FRAMES: usize = 200;
+/// Fewer frames than these do not move.
+const FEWEST_FRAMES: usize = 50;
 /// Grains beyond these are left out, the same ones in every frame.
-const MOST_POINTS: usize = 5000;
+const MOST_POINTS: usize = 20_000;
+/// Places and speeds take no more than about this, so that a page stays below 12 MB [byte].
+const MOST_BYTES: usize = 7_200_000;
 /// The script of the player.
 const SCRIPT: &str = include_str!("player.js");
 
-/// The frames that the page shows: first and last, and others evenly between.
+/// The frames that the page shows: first and last, and others evenly between, as many as the page can hold.
 pub(super) fn chosen(frames: &[Frame]) -> Vec<&Frame> {
-    if frames.len() <= MOST_FRAMES {
+    // Two bytes per place and one per speed, with the third place where there is one.
+    let is_deep = frames.iter().any(|f| f.positions.iter().any(|p| p[2] != 0.0));
+    let bytes = if is_deep { 7 } else { 5 };
+    let total: usize = frames.iter().map(|f| bytes * f.positions.len().min(MOST_POINTS)).sum();
+    let affordable = (frames.len() * MOST_BYTES).checked_div(total).unwrap_or(MOST_FRAMES);
+    let count = affordable.clamp(FEWEST_FRAMES, MOST_FRAMES);
+    if frames.len() <= count {
         return frames.iter().collect();
     }
     let last = frames.len() - 1;
-    (0..MOST_FRAMES).map(|k| &frames[k * last / (MOST_FRAMES - 1)]).collect()
+    (0..count).map(|k| &frames[k * last / (count - 1)]).collect()
 }
 
 /// The player of `frames`, which are those of `scene`; empty when there is nothing to play.
@@ -53,16 +63,16 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
         "sides": scene.sides,
         "deep": scene.is_deep,
         "turned": scene.is_turned,
-        "gravity": setup.gravity,
         "diameter": setup.diameter,
         "colours": colours,
         "units": { "time": if setup.units[2] == "time" { "" } else { &setup.units[2] }, "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
     });
     let hint = if scene.is_deep { " Drag, or the arrow keys with Shift, turn the box." } else { "" };
-    let aspect = if scene.is_deep { 1.5 } else { scene.aspect() };
+    // The canvas of about 1000 pixels has a margin of 7 around the box.
+    let aspect = if scene.is_deep { 1.5 } else { 1000.0 / (986.0 / scene.aspect() + 14.0) };
     format!(
         include_str!("player.html"),
-        aspect = aspect.clamp(0.4, 14.0),
+        aspect = aspect.clamp(0.4, 20.0),
         last = frames.len() - 1,
         gradient = ColourMap::Speed.gradient(),
         caption = escape(&format!("{}{hint}", caption(frames, share, scene))),
@@ -77,7 +87,7 @@ fn caption(frames: &[&Frame], share: f64, scene: &Scene) -> String {
     let thinned = frames.iter().any(|f| f.grains > f.positions.len() as u64);
     let shown = match thinned {
         _ if share < 1.0 => format!("{} % of the recorded grains are shown", number(100.0 * share, 2)),
-        true => "Part of the grains is shown".to_owned(),
+        true => "The box looks emptier than it is: only part of the grains is recorded and shown".to_owned(),
         false => "Every grain is shown".to_owned(),
     };
     let is_shared = scene.speeds.windows(2).all(|pair| pair[0] == pair[1]);
@@ -154,10 +164,18 @@ mod tests {
     }
 
     #[test]
+    fn many_grains_cost_frames_and_not_grains() {
+        let frames = vec![frame(20_000); 200];
+        let count = chosen(&frames).len();
+        assert!((FEWEST_FRAMES..100).contains(&count), "{count}");
+        assert!(count * 5 * 20_000 <= MOST_BYTES);
+    }
+
+    #[test]
     fn grains_are_thinned_to_what_a_page_holds() {
-        for count in [4999, 5001, 20_000, 100_000] {
+        for count in [4999, 20_000, 20_001, 100_000] {
             let kept = chosen_grains(&frame(count), share_shown(count)).len();
-            assert!((4500..=MOST_POINTS).contains(&kept) || kept == count, "{count}: {kept}");
+            assert!((18_000..=MOST_POINTS).contains(&kept) || kept == count, "{count}: {kept}");
         }
     }
 

@@ -91,6 +91,8 @@ pub(super) struct Plot {
     pub wide: bool,
     /// Whether one unit of x is as long as one unit of y.
     pub same_units: bool,
+    /// Ends of the linear axes where the points do not set them.
+    pub ranges: [Option<[f64; 2]>; 2],
 }
 
 impl Default for Plot {
@@ -107,12 +109,15 @@ impl Default for Plot {
             ordered: None,
             wide: false,
             same_units: false,
+            ranges: [None; 2],
         }
     }
 }
 
 /// Room around the frame: left, right, top, bottom [pixel].
 const MARGIN: [f64; 4] = [58.0, 16.0, 30.0, 46.0];
+/// The share of the abscissa that counts as the start.
+const START: f64 = 0.15;
 /// A curve of more points is thinned to its outline.
 const MOST_POINTS: usize = 1200;
 
@@ -165,6 +170,35 @@ impl Plot {
         html
     }
 
+    /// The same with its ordinate made for what comes after a start that would squeeze it, and a note on what is cut.
+    pub(super) fn focused(mut self) -> Self {
+        if self.y_scale == Scale::Logarithmic || self.x_scale == Scale::Logarithmic {
+            return self;
+        }
+        let Some(points) = self.curves.iter().find(|c| c.stroke == Stroke::Line).map(|c| &c.points) else {
+            return self;
+        };
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return self;
+        };
+        let start = first[0] + START * (last[0] - first[0]);
+        let range = |points: &[[f64; 2]]| {
+            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], p| [l.min(p[1]), m.max(p[1])])
+        };
+        let [lower, upper] = range(&points[points.partition_point(|p| p[0] < start)..]);
+        let [least, most] = range(points);
+        let later = upper - lower;
+        let is_above = most - upper > 2.0 * later && most > 2.0 * upper.abs();
+        if !(is_above && later > 0.0 && least >= lower - later) {
+            return self;
+        }
+        let lower = if least >= 0.0 { 0.0 } else { least };
+        self.ranges[1] = Some([lower, upper + 0.5 * (upper - lower)]);
+        let cut = format!("The start, up to {}, lies above the frame.", number(most, 3));
+        self.caption = [self.caption.as_str(), &cut].join(" ").trim().to_owned();
+        self
+    }
+
     fn frame(&self) -> Frame {
         // Theory may run far away from what was measured; it does not set the axes.
         let measured = |curve: &&Curve| curve.stroke != Stroke::Dashed || self.curves.len() == 1;
@@ -174,8 +208,12 @@ impl Plot {
             curves.map(move |p| p[axis]).chain(edges)
         };
         let exact = self.field.is_some();
-        let x = Axis::over(values(0), self.x_scale, true);
-        let y = Axis::over(values(1), self.y_scale, exact);
+        let given =
+            |axis: usize| self.ranges[axis].map(|[lower, upper]| Axis { lower, upper, logarithmic: false });
+        // Dots at the very end would be cut.
+        let has_dots = self.curves.iter().any(|curve| curve.stroke == Stroke::Dots);
+        let x = given(0).unwrap_or_else(|| Axis::over(values(0), self.x_scale, !has_dots));
+        let y = given(1).unwrap_or_else(|| Axis::over(values(1), self.y_scale, exact));
         let outer = if self.wide { 1000.0 } else { 490.0 };
         let width = outer - MARGIN[0] - MARGIN[1];
         let natural = if self.wide { 300.0 } else { 264.0 };
@@ -394,6 +432,17 @@ mod tests {
         points[54_321][1] = 7.0;
         let thinned = outline(&points);
         assert!(thinned.len() <= MOST_POINTS + 2 && thinned.contains(&points[54_321]));
+    }
+
+    #[test]
+    fn a_start_does_not_squeeze_the_rest() {
+        let settling = |start: f64| {
+            let value = |t: f64| if t < 3.0 { start } else { 1.0 + 0.1 * t.sin() };
+            plot((0..100).map(f64::from).map(|t| [t, value(t)]).collect()).focused()
+        };
+        assert!(settling(50.0).caption.contains("up to 50") && settling(50.0).ranges[1].is_some());
+        assert_eq!(settling(1.2).ranges[1], None);
+        assert_eq!(settling(0.0).ranges[1], None);
     }
 
     #[test]

@@ -36,6 +36,12 @@ pub(super) struct Setup {
     pub wall_velocities: Option<[f64; 2]>,
     /// Whether every axis is periodic.
     pub is_periodic: bool,
+    /// `[axis]`: whether that axis is periodic.
+    pub periodic_axes: [bool; 3],
+    /// Whether a side is open, so that grains can leave.
+    pub has_open_side: bool,
+    /// Whether collisions transfer momentum as Enskog theory asks for every restitution.
+    pub is_transfer_corrected: bool,
     /// Grains that the source pours, and how many per time.
     pub source: Option<[f64; 2]>,
     /// Grains at the start.
@@ -77,6 +83,9 @@ impl Setup {
             cell_size: float(at("engine.cell_size")),
             wall_velocities: wall_velocities(&document),
             is_periodic: is_periodic(log, &document),
+            periodic_axes: ["x", "y", "z"].map(|axis| is_axis_periodic(log, &document, axis)),
+            has_open_side: has_open_side(log, &document),
+            is_transfer_corrected: at("engine.transfer").and_then(Item::as_str) == Some("corrected"),
             source: float(at("source.count"))
                 .zip(float(at("source.rate")))
                 .map(|(count, rate)| [count, rate]),
@@ -90,6 +99,27 @@ impl Setup {
     /// Whether a constant force acts.
     pub(super) fn has_gravity(&self) -> bool {
         self.gravity.iter().any(|g| *g != 0.0)
+    }
+
+    /// The axis along which a constant force acts, if it acts along one alone.
+    pub(super) fn gravity_axis(&self) -> Option<usize> {
+        let mut axes = (0..self.gravity.len()).filter(|axis| self.gravity[*axis] != 0.0);
+        axes.next().filter(|_| axes.next().is_none())
+    }
+
+    /// Whether grains fall without end: a force along a periodic axis.
+    pub(super) fn is_pipe(&self) -> bool {
+        self.gravity_axis().is_some_and(|axis| self.periodic_axes.get(axis) == Some(&true))
+    }
+
+    /// Whether grains come to lie on something.
+    pub(super) fn has_floor(&self) -> bool {
+        self.gravity_axis().is_some() && !self.is_pipe()
+    }
+
+    /// Whether nothing drives the gas, so that it ages by its collisions.
+    pub(super) fn is_undriven(&self) -> bool {
+        !self.has_gravity() && self.source.is_none() && self.wall_velocities.is_none()
     }
 
     /// The unit of a quantity in the names of the scenario.
@@ -160,6 +190,22 @@ fn is_periodic(log: &RunLog, document: &DocumentMut) -> bool {
     }
     let sides = item(document, "boundary").and_then(Item::as_table_like);
     sides.is_some_and(|sides| sides.iter().all(|(_, side)| side.as_str() == Some("periodic")))
+}
+
+/// From the recorded box; from the scenario's text for a log without one.
+fn is_axis_periodic(log: &RunLog, document: &DocumentMut, axis: &str) -> bool {
+    let place = ["x", "y", "z"].iter().position(|name| *name == axis).unwrap_or(0);
+    log.walls.as_ref().map_or_else(
+        || item(document, &format!("boundary.{axis}")).and_then(Item::as_str) == Some("periodic"),
+        |walls| walls.sides[place].iter().all(|side| side == "periodic"),
+    )
+}
+
+fn has_open_side(log: &RunLog, document: &DocumentMut) -> bool {
+    log.walls.as_ref().map_or_else(
+        || item(document, "boundary").is_some_and(|sides| sides.to_string().contains("\"open\"")),
+        |walls| walls.sides.iter().flatten().any(|side| side == "open"),
+    )
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
         ..Plot::default()
     };
     if let Some(law) = linear_law(evidence) {
+        plot.ranges = ranges(&law, &measured.points);
         plot.curves.push(Curve::new("linear law v·y/H", law, Stroke::Dashed, Ink::Text));
         plot.caption =
             "Dashed: the straight line between the velocities of the two walls (Müller 2001, fig. 3.12)."
@@ -36,6 +37,15 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
     }
     plot.curves.push(measured);
     vec![plot]
+}
+
+/// From wall to wall, and all velocities on the way with some room.
+fn ranges(law: &[[f64; 2]], measured: &[[f64; 2]]) -> [Option<[f64; 2]>; 2] {
+    let velocities = law.iter().chain(measured).map(|p| p[1]).filter(|v| v.is_finite());
+    let [least, most] = velocities.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], v| [l.min(v), m.max(v)]);
+    let room = 0.06 * (most - least);
+    let is_range = law[0][0] < law[1][0] && room > 0.0;
+    [is_range.then(|| [law[0][0], law[1][0]]), is_range.then_some([least - room, most + room])]
 }
 
 /// The straight line from wall to wall.

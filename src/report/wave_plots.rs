@@ -19,7 +19,10 @@ const MOST_TIMES: usize = 800;
 pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
     let densities = evidence.profiles(DENSITY);
     let mut plots = Vec::new();
-    plots.extend(space_time(evidence, &densities));
+    // Elsewhere the density is a profile that does not travel.
+    if evidence.setup.is_pipe() {
+        plots.extend(space_time(evidence, &densities));
+    }
     plots.extend(last_profiles(evidence, &densities));
     plots.extend(spectrum(evidence));
     plots
@@ -73,26 +76,63 @@ fn upper_end(table: &[Vec<f64>]) -> f64 {
     if most > 0.0 { most } else { 1.0 }
 }
 
-/// The last profile, with some before it behind.
+/// The last profile, with some before it behind; of a sheared gas the mean of many.
 fn last_profiles(evidence: &Evidence<'_>, densities: &[&Profile]) -> Option<Plot> {
+    let setup = evidence.setup;
     let last = densities.last()?;
+    let name = if setup.has_floor() { "height above the floor" } else { "position" };
+    let mut plot = Plot {
+        title: "Density profile".to_owned(),
+        x_label: setup.with_unit(name, last.columns[0].unit),
+        y_label: "volume fraction".to_owned(),
+        ..Plot::default()
+    };
+    if setup.wall_velocities.is_some() && densities.len() >= 4 {
+        let late = &densities[densities.len() / 2..];
+        plot.curves = vec![
+            Curve::new("last recording", density_points(last), Stroke::Faint, Ink::Series(5)),
+            Curve::new("mean of the second half", mean_profile(late), Stroke::Line, Ink::Series(0)),
+        ];
+        return Some(plot);
+    }
     let shown = spread(densities, 3);
     let curve = |(index, profile): (usize, &&Profile)| {
         let share = if shown.len() > 1 { index as f64 / (shown.len() - 1) as f64 } else { 0.0 };
-        let points = points(values(profile, "position", 0), values(profile, "volume_fraction", 1));
         // The last stands out.
         let stroke = if index + 1 == shown.len() { Stroke::Line } else { Stroke::Faint };
-        Curve::new("", points, stroke, Ink::Ordered(share))
+        Curve::new("", density_points(profile), stroke, Ink::Ordered(share))
     };
     let time = |profile: &Profile| format!("t = {}", number(profile.time, 3));
-    Some(Plot {
-        title: "Density profile".to_owned(),
-        x_label: evidence.setup.label(&last.columns[0]),
-        y_label: "volume fraction".to_owned(),
-        curves: shown.iter().enumerate().map(curve).collect(),
-        ordered: (shown.len() > 1).then(|| [time(shown[0]), time(last)]),
-        ..Plot::default()
-    })
+    plot.curves = shown.iter().enumerate().map(curve).collect();
+    plot.ordered = (shown.len() > 1).then(|| [time(shown[0]), time(last)]);
+    if setup.has_floor() {
+        plot.ranges[0] = filled(&plot.curves);
+        plot.caption = "Means over whole layers of the box.".to_owned();
+    }
+    Some(plot)
+}
+
+fn density_points(profile: &Profile) -> Vec<[f64; 2]> {
+    points(values(profile, "position", 0), values(profile, "volume_fraction", 1))
+}
+
+/// The mean at every place, over all profiles.
+fn mean_profile(profiles: &[&Profile]) -> Vec<[f64; 2]> {
+    let mut mean = profiles.first().map(|first| density_points(first)).unwrap_or_default();
+    for (place, point) in mean.iter_mut().enumerate() {
+        let at = profiles.iter().filter_map(|p| values(p, "volume_fraction", 1).get(place));
+        point[1] = at.sum::<f64>() / profiles.len() as f64;
+    }
+    mean
+}
+
+/// The stretch in which there is matter, with some room above.
+fn filled(curves: &[Curve]) -> Option<[f64; 2]> {
+    let places = || curves.iter().flat_map(|curve| &curve.points);
+    let first = places().map(|p| p[0]).fold(f64::INFINITY, f64::min);
+    let last = places().filter(|p| p[1] > 0.0).map(|p| p[0]).fold(f64::NEG_INFINITY, f64::max);
+    let end = places().map(|p| p[0]).fold(f64::NEG_INFINITY, f64::max);
+    (first < last).then(|| [first, (last + 0.15 * (last - first)).min(end)])
 }
 
 /// Power against frequency, with the fitted power law.

@@ -1,7 +1,7 @@
 """Opens reports from file:// in headless Chromium and tries their player.
 
 Speaks the WebDriver protocol to chromedriver with the standard library alone.
-Set GRAINFLOW_SCREENSHOTS=DIR to keep a picture of every page.
+Set GRAINFLOW_SCREENSHOTS=DIR to keep pictures of every whole page, wide and narrow.
 """
 
 import base64
@@ -37,6 +37,8 @@ const scrub = document.getElementById('scrub');
 scrub.value = arguments[0];
 scrub.dispatchEvent(new Event('input', { bubbles: true }));
 """
+# Windows in which pages are looked at [pixel].
+SIZES = {"wide": (1160, 1400), "narrow": (420, 900)}
 # Everything that sticks out of the page or of its plot, or has no size.
 LAYOUT = """
 const faults = [];
@@ -101,6 +103,18 @@ class Browser:
     def do(self, method, path, body=None):
         return self.send(method, f"/session/{self.session}{path}", body)
 
+    def command(self, name, **parameters):
+        """A command of the DevTools protocol."""
+        return self.do("POST", "/goog/cdp/execute", {"cmd": name, "params": parameters})
+
+    def resize(self, width, height):
+        self.command("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def picture(self):
+        """The whole page as PNG, also what lies below the window."""
+        answer = self.command("Page.captureScreenshot", format="png", captureBeyondViewport=True)
+        return base64.b64decode(answer["data"])
+
     def run(self, script, *arguments):
         return self.do("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
@@ -141,19 +155,27 @@ def check_player(browser):
     browser.run(SCRUB, str(last))
 
 
+def name_of(path):
+    """Reports are all called report.html; their folders are not."""
+    return path.resolve().parent.name if path.stem == "report" else path.stem
+
+
 def check(browser, path):
+    browser.resize(*SIZES["wide"])
     browser.do("POST", "/url", {"url": path.resolve().as_uri()})
     if browser.run("return document.getElementById('grains') !== null"):
         check_player(browser)
-    faults = browser.run(LAYOUT)
-    require(not faults, "; ".join(faults))
+    folder = os.environ.get("GRAINFLOW_SCREENSHOTS")
+    for size, (width, height) in SIZES.items():
+        browser.resize(width, height)
+        faults = browser.run(LAYOUT)
+        require(not faults, f"{path}, {size}: " + "; ".join(faults))
+        if folder:
+            pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+            pathlib.Path(folder, f"{name_of(path)}-{size}.png").write_bytes(browser.picture())
     errors = [entry["message"] for entry in browser.do("POST", "/se/log", {"type": "browser"})
               if entry["level"] in ("SEVERE", "WARNING")]
     require(not errors, f"the console says {errors}")
-    folder = os.environ.get("GRAINFLOW_SCREENSHOTS")
-    if folder:
-        picture = base64.b64decode(browser.do("GET", "/screenshot"))
-        pathlib.Path(folder, path.stem + ".png").write_bytes(picture)
     print(f"{path}: works")
 
 

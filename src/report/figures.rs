@@ -1,0 +1,230 @@
+//! What the figures of a summary are: which belong to the physics, which count the work of an engine, their units,
+//! and whether the run was long enough for them.
+
+use super::evidence::Evidence;
+use super::number::number;
+use super::setup::Setup;
+use crate::observe::measure::Dimension;
+use crate::statistics::block_average;
+
+/// Keys of the summary that every run has; all others are figures of its scenario.
+const COMMON: [&str; 27] = [
+    "scenario",
+    "engine",
+    "dimension",
+    "particles_initial",
+    "particles_final",
+    "volume_fraction",
+    "seed",
+    "threads",
+    "version",
+    "numerics",
+    "steps",
+    "steps_capped",
+    "events",
+    "collisions",
+    "collisions_per_particle",
+    "simulated_time",
+    "end_reason",
+    "interrupted",
+    "kinetic_energy_initial",
+    "kinetic_energy_final",
+    "temperature",
+    "momentum_drift",
+    "wall_seconds",
+    "particle_steps_per_second",
+    "events_per_second",
+    "peak_memory_bytes",
+    "state_hash",
+];
+
+/// What an engine counts while it works.
+pub(super) const COUNTERS: [&str; 11] = [
+    "steps",
+    "steps_capped",
+    "events",
+    "collisions",
+    "candidates",
+    "cell_collisions",
+    "rejected_moves",
+    "cell_capacity",
+    "largest_occupancy",
+    "poured",
+    "removed",
+];
+
+/// Figures that are told beside another one.
+const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
+
+/// Known figures in the order of their weight: name, powers of mass, length and time in two dimensions, and
+/// whether it is a mean over the second half of the run.
+const KNOWN: [(&str, [i8; 3], bool); 15] = [
+    ("heap_slope", [0, 0, 0], false),
+    ("heap_height", [0, 1, 0], false),
+    ("velocity_profile_slope", [0, 0, 0], true),
+    ("contrast_over_poisson", [0, 0, 0], true),
+    ("density_contrast", [0, 0, 0], true),
+    ("spectrum_slope", [0, 0, 0], false),
+    ("flow_velocity", [0, 1, -1], true),
+    ("flow_rate", [0, 0, -1], true),
+    ("wall_shear_stress", [1, 0, -2], true),
+    ("wall_normal_stress", [1, 0, -2], true),
+    ("centre_of_mass_height", [0, 1, 0], false),
+    ("centre_of_mass_mean_height", [0, 1, 0], true),
+    ("compressibility_factor", [0, 0, 0], true),
+    ("pressure", [1, 0, -2], true),
+    ("collision_frequency", [0, 0, -1], true),
+];
+
+/// A drift shows in no fewer recordings than these in the second half.
+const FEWEST_RECORDINGS: usize = 20;
+/// What is driven forgets its start in no fewer collisions per particle than these.
+const FEWEST_COLLISIONS: f64 = 20.0;
+/// A gas whose temperature changes by a larger factor over the second half is not steady.
+const STEADY_TEMPERATURES: f64 = 1.2;
+
+/// Figures of the physics that have a value and a meaning in this run, the most telling first.
+pub(super) fn of_the_physics<'a>(evidence: &Evidence<'a>) -> Vec<&'a str> {
+    let rank = |name: &str| KNOWN.iter().position(|known| known.0 == name).unwrap_or(KNOWN.len());
+    let names = evidence.summary.keys().map(String::as_str);
+    let mut names: Vec<&str> = names
+        .filter(|name| ![&COMMON[..], &COUNTERS, &DETAILS].concat().contains(name))
+        .filter(|name| !name.ends_with("_standard_error"))
+        .filter(|name| evidence.figure(name).is_some() && has_meaning(evidence, name))
+        .collect();
+    names.sort_by_key(|name| rank(name));
+    names
+}
+
+/// Counters that apply to this run, with their values.
+pub(super) fn counters(evidence: &Evidence<'_>) -> Vec<(&'static str, f64)> {
+    let counted = COUNTERS.into_iter().filter_map(|name| Some((name, evidence.figure(name)?)));
+    // Nothing leaves a closed box.
+    counted
+        .filter(|(name, value)| *name != "removed" || *value > 0.0 || evidence.setup.has_open_side)
+        .collect()
+}
+
+/// The unit of a figure, from the series where that has it.
+pub(super) fn unit_of(evidence: &Evidence<'_>, name: &str) -> String {
+    if let Some((_, column)) = evidence.column(name) {
+        return evidence.setup.unit(column.unit);
+    }
+    let known = KNOWN.iter().find(|known| known.0 == name).map(|known| known.1);
+    let [mass, mut length, time] = match name {
+        "temperature" => [1, 2, -2],
+        _ => known.unwrap_or_default(),
+    };
+    // A force per area is one per length in two dimensions.
+    if mass == 1 && name != "temperature" {
+        length -= i8::from(evidence.setup.dimension == 3);
+    }
+    evidence.setup.unit(Dimension { mass, length, time })
+}
+
+/// Whether a figure says what its name says.
+pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
+    match name {
+        // The mean of something that falls by decades is a number without a use.
+        "pressure" | "collision_frequency" => is_temperature_steady(evidence),
+        "wall_normal_stress" => !is_floor_untouched(evidence.setup),
+        _ => true,
+    }
+}
+
+/// Whether a mean over the second half stands for more than itself.
+pub(super) fn is_steady(evidence: &Evidence<'_>, name: &str) -> bool {
+    let is_mean = KNOWN.iter().find(|known| known.0 == name).is_none_or(|known| known.2);
+    is_mean && has_meaning(evidence, name) && doubt(evidence, name).is_none()
+}
+
+/// Whether full cells keep grains away from the floor that carries them.
+pub(super) fn is_floor_untouched(setup: &Setup) -> bool {
+    setup.engine == "hsmc" && setup.has_floor()
+}
+
+/// Whether the temperature keeps its size over the second half of the run.
+fn is_temperature_steady(evidence: &Evidence<'_>) -> bool {
+    let late: Vec<f64> = match evidence.column("temperature") {
+        Some((column, _)) => second_half(&evidence.series(0, column)).iter().map(|p| p[1]).collect(),
+        None => ["kinetic_energy_initial", "kinetic_energy_final"]
+            .iter()
+            .filter_map(|name| evidence.figure(name))
+            .collect(),
+    };
+    let most = late.iter().copied().fold(0.0, f64::max);
+    let least = late.iter().copied().fold(f64::INFINITY, f64::min);
+    most <= STEADY_TEMPERATURES * least
+}
+
+/// Points after the middle of their times.
+pub(super) fn second_half(points: &[[f64; 2]]) -> &[[f64; 2]] {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        return points;
+    };
+    let middle = 0.5 * (first[0] + last[0]);
+    &points[points.partition_point(|p| p[0] < middle)..]
+}
+
+/// Why a figure should not be taken for that of a steady state, in words; `None` when nothing speaks against it.
+pub(super) fn doubt(evidence: &Evidence<'_>, name: &str) -> Option<String> {
+    if !KNOWN.iter().any(|known| known.0 == name && known.2) {
+        return None;
+    }
+    if name == "velocity_profile_slope"
+        && let Some(share) = evidence.figure("velocity_profile_r_squared").filter(|share| *share < 0.9)
+    {
+        return Some(format!("not steady: the profile is no straight line, R² = {}", number(share, 2)));
+    }
+    if evidence.standard_error(name).is_none() {
+        return Some("the run is too short for a standard error".to_owned());
+    }
+    let collisions = evidence.figure("collisions_per_particle").unwrap_or(0.0);
+    if !evidence.setup.is_undriven() && collisions < FEWEST_COLLISIONS {
+        return Some(format!("too short to be steady: {} collisions per particle", number(collisions, 2)));
+    }
+    let (column, _) = evidence.column(name)?;
+    drift(second_half(&evidence.series(0, column)))
+}
+
+/// Whether the two halves of steady values differ by more than their errors and a tenth of themselves.
+fn drift(points: &[[f64; 2]]) -> Option<String> {
+    let values: Vec<f64> = points.iter().map(|p| p[1]).collect();
+    if values.len() < FEWEST_RECORDINGS {
+        return None;
+    }
+    let (early, late) = values.split_at(values.len() / 2);
+    let (early, late) = (block_average(early)?, block_average(late)?);
+    let error = early.standard_error?.hypot(late.standard_error?);
+    let change = (late.value - early.value).abs();
+    let is_drifting = change > 4.0 * error && change > 0.1 * early.value.abs();
+    is_drifting.then(|| {
+        format!(
+            "not steady: from {} to {} over its second half",
+            number(early.value, 3),
+            number(late.value, 3)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(value: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+        (0..100).map(f64::from).map(|t| [t, value(t) + 0.05 * (7.3 * t).sin()]).collect()
+    }
+
+    #[test]
+    fn drifts_are_found_and_noise_is_not() {
+        assert_eq!(drift(&series(|_| 1.0)), None);
+        assert!(drift(&series(|t| 1.0 + 0.01 * t)).unwrap().contains("not steady"));
+        assert_eq!(drift(&series(|t| t)[..8]), None);
+    }
+
+    #[test]
+    fn the_second_half_goes_by_time() {
+        let points: Vec<[f64; 2]> = (0..11).map(|k| [2f64.powi(k), 0.0]).collect();
+        assert_eq!(second_half(&points).len(), 1);
+    }
+}
