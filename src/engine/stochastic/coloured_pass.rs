@@ -229,7 +229,7 @@ mod tests {
     fn spans_cover_every_axis_in_twos_and_threes() {
         for cells in 1..40 {
             for periodic in [false, true] {
-                if periodic && (cells < 4 || cells % 2 == 1) {
+                if periodic && (cells < 4 || !cells.is_multiple_of(2)) {
                     continue;
                 }
                 let grid = Grid::new(DVec2::ZERO, DVec2::ONE, &[cells, 1], &[periodic, false]);
@@ -238,7 +238,7 @@ mod tests {
                 assert_eq!(spans.last().map(|s| s.end), Some(cells));
                 assert!(spans.windows(2).all(|w| w[0].end == w[1].start));
                 assert!(cells < 4 || spans.iter().all(|s| (2..=3).contains(&s.len())));
-                assert!(!periodic || spans.len() % 2 == 0);
+                assert!(!periodic || spans.len().is_multiple_of(2));
             }
         }
     }
