@@ -25,7 +25,7 @@ fn has_none(contrast: f64) -> bool {
 
 #[test]
 fn dissipation_makes_waves() {
-    let contrasts = contrasts(&["0.6", "0.999"], &["run.time=60.0"]);
+    let contrasts = contrasts(&["0.6", "0.999"], &["run.time=120.0"]);
     assert!(has_waves(contrasts[0]) && has_none(contrasts[1]));
     assert!(!has_none(contrasts[0]) && !has_waves(contrasts[1]));
 }
@@ -33,7 +33,7 @@ fn dissipation_makes_waves() {
 /// A cell that holds four grains leaves no room for a contrast: the claim needs the cells of the scenario.
 #[test]
 fn small_cells_have_no_waves() {
-    assert!(!has_waves(contrasts(&["0.6"], &["run.time=40.0", "engine.cell_size=2.0"])[0]));
+    assert!(!has_waves(contrasts(&["0.6"], &["run.time=120.0", "engine.cell_size=2.0"])[0]));
 }
 
 #[test]

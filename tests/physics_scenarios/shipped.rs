@@ -1,6 +1,5 @@
 //! Every scenario that comes with the program runs, and keeps what it must keep.
 
-use grainflow::matter::gas::Gas;
 use grainflow::scenario::builtin;
 use grainflow::scenario::model::{AnyScenario, Scenario};
 use grainflow::space::Vector;
@@ -15,9 +14,23 @@ fn shorter(name: &str) -> &'static [&'static str] {
             &["domain.size=[100.0, 100.0]", "particles.count=3183", "run.collisions_per_particle=20.0"]
         }
         "cooling" => &["run.collisions_per_particle=10.0", "initial.equilibrate=2.0"],
-        "pipe" => &["run.time=10.0"],
+        "pipe" => &["run.time=40.0"],
         "sedimentation" => &["run.time=0.5"],
-        _ => &["run.collisions_per_particle=20.0"],
+        "shear" => &["run.collisions_per_particle=20.0"],
+        other => panic!("how short may {other} be?"),
+    }
+}
+
+/// Figures that a scenario exists for; one that is not finite is not among the figures. A heap that
+/// sinks into the floor has no flanks: slopes are for `heap.rs`.
+fn what_it_shows(name: &str) -> &'static [&'static str] {
+    match name {
+        "heap" | "heap-full" => &["heap_height", "centre_of_mass_height", "kinetic_energy_final"],
+        "clustering" | "cooling" => &["compressibility_factor", "temperature", "momentum_drift"],
+        "pipe" => &["contrast_over_poisson", "flow_rate", "flow_velocity", "spectrum_slope"],
+        "sedimentation" => &["centre_of_mass_height", "kinetic_energy_final"],
+        "shear" => &["velocity_profile_slope", "velocity_profile_r_squared", "wall_shear_stress"],
+        other => panic!("what is {other} for?"),
     }
 }
 
@@ -26,7 +39,7 @@ fn inspect<V: Vector>(scenario: &Scenario<V>, label: &str) {
     let mut simulation = start(scenario);
     let capacity = simulation.capacity();
     // No cell may ever hold more than fit or than it began with; without a capacity any number is right.
-    let at_start = largest_occupancy(simulation.gas());
+    let at_start = simulation.gas().largest_occupancy();
     let bound = capacity.map_or(u32::MAX, |capacity| capacity.max(at_start));
     advance_until(&mut simulation, |simulation| {
         let most = simulation.gas().largest_occupancy();
@@ -35,12 +48,9 @@ fn inspect<V: Vector>(scenario: &Scenario<V>, label: &str) {
     });
     assert!(simulation.end_reason().is_some() && simulation.totals().steps > 50, "{label}");
     let figures = figures(&mut simulation);
-    assert!(figures.len() >= 3, "{label}: {figures:?}");
-    assert!(figures.values().all(|value| value.is_finite()), "{label}: {figures:?}");
-}
-
-fn largest_occupancy<V: Vector>(gas: &Gas<V>) -> u32 {
-    gas.largest_occupancy()
+    for &name in what_it_shows(&scenario.name) {
+        assert!(figures.get(name).is_some_and(|value| value.is_finite()), "{label}: {name} in {figures:?}");
+    }
 }
 
 #[test]
