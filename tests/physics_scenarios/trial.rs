@@ -37,7 +37,13 @@ pub(crate) fn scenario_in_space(text: &str, seed: u64) -> Scenario<DVec3> {
 /// The start of a run.
 pub(crate) fn start<V: Vector>(scenario: &Scenario<V>) -> Simulation<'_, V> {
     let gas = initial::build(scenario, None).unwrap();
-    Simulation::start(scenario, gas, &mut NoLaps).unwrap()
+    let mut simulation = Simulation::start(scenario, gas, &mut NoLaps).unwrap();
+    // The recording with which every run begins: measures remember it.
+    let (measures, snapshot) = simulation.observation();
+    for measure in measures {
+        measure.values(&snapshot);
+    }
+    simulation
 }
 
 /// Advances until `stop` says so, at a limit at the latest.
