@@ -6,6 +6,12 @@
 //! Those that take longer run with
 //! `cargo test --release --test physics_scenarios -- --ignored`.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "all of this is test code; figures are printed for those who run with --nocapture"
+)]
+
 mod heap;
 mod pipe;
 mod sedimentation;
