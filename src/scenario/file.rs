@@ -36,9 +36,7 @@ pub(super) fn fetch(source: &str) -> Result<(String, String), ScenarioError> {
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        wrong(format!(
-            "is not UTF-8 text (byte {at}); a scenario is a TOML text"
-        ))
+        wrong(format!("is not UTF-8 text (byte {at}); a scenario is a TOML text"))
     })?;
     Ok((stem(path), text))
 }
@@ -47,11 +45,8 @@ fn missing(source: &str) -> String {
     let names = || builtin::list().iter().map(|(name, _)| *name);
     let stem =
         Path::new(source).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let meant = did_you_mean(&stem, names());
-    format!(
-        "is neither a file nor a built-in scenario{meant} (built in: {})",
-        names().collect::<Vec<_>>().join(", ")
-    )
+    let list = format!("built in are {}", names().collect::<Vec<_>>().join(", "));
+    format!("is neither a file nor a built-in scenario; {}", did_you_mean(&stem, names(), &list))
 }
 
 /// The file's name without its ending; never empty and never a path of its own.
