@@ -50,8 +50,8 @@ fn mean_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
     present + poured * share
 }
 
-/// Seconds of a run on one core, its recordings and its equilibration included. The rates are those
-/// of a desktop processor of 2020, measured with shipped scenarios; other machines are within a factor of two.
+/// Seconds of a run on one core, its recordings and its equilibration included. The constants are fitted
+/// to processor times of short single-threaded runs on one machine; another may differ by a factor of two.
 pub(super) fn seconds<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
     let steps = estimate::steps(scenario)?;
     let recording = recordings(scenario).made * mean_grains(scenario) * RECORDING;
