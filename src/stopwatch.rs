@@ -55,9 +55,20 @@ impl Stopwatch {
 /// The most memory this process has held so far, where the system tells [bytes].
 pub fn peak_memory_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    kilobytes(&status, "VmHWM:")
+}
+
+/// The number behind `key` in a table of the system, which counts in kilobytes [bytes].
+fn kilobytes(table: &str, key: &str) -> Option<u64> {
+    let line = table.lines().find_map(|line| line.strip_prefix(key))?;
     let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+/// Memory that a new process can have, where the system tells [bytes].
+pub fn available_memory_bytes() -> Option<u64> {
+    let facts = std::fs::read_to_string("/proc/meminfo").ok()?;
+    kilobytes(&facts, "MemAvailable:")
 }
 
 /// A number that differs from process to process, for names of temporary files.

@@ -4,6 +4,8 @@ use clap::Args;
 
 use super::input::ScenarioInput;
 use super::{Exit, complain};
+use crate::scenario::check::check_for_memory;
+use crate::stopwatch::available_memory_bytes;
 
 /// Say what a scenario means, or all that is wrong with it; nothing runs
 #[derive(Args, Debug)]
@@ -15,7 +17,7 @@ pub(super) struct CheckArguments {
 pub(super) fn check(arguments: &CheckArguments) -> Exit {
     match arguments.input.load() {
         Ok(scenario) => {
-            println!("{}", crate::scenario::check::check(&scenario));
+            println!("{}", check_for_memory(&scenario, available_memory_bytes()));
             Exit::Done
         }
         Err(error) => {

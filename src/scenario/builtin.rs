@@ -32,8 +32,8 @@ pub fn list() -> &'static [(&'static str, &'static str)] {
 /// What to say where `name` is none of them.
 pub fn unknown(name: &str) -> String {
     let names: Vec<&str> = SCENARIOS.iter().map(|(name, _, _)| *name).collect();
-    let meant = did_you_mean(name, names.iter().copied());
-    format!("there is no built-in scenario `{name}`{meant} (built in: {})", names.join(", "))
+    let remedy = did_you_mean(name, names.iter().copied(), &format!("there are {}", names.join(", ")));
+    format!("there is no built-in scenario `{name}`; {remedy}")
 }
 
 /// The text of the built-in scenario called `name`.

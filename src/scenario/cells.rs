@@ -21,8 +21,7 @@ pub(super) struct CellPlan<V> {
     pub(super) size: V,
     pub(super) periodic: [bool; 3],
     pub(super) grain: Grain,
-    /// Grains at the start, and with those that a source adds.
-    pub(super) count: u32,
+    /// Grains at the start with those that a source adds.
     pub(super) final_count: u64,
     /// For HSMC ν_max, `None` for the other engines.
     pub(super) maximum_volume_fraction: Option<f64>,
@@ -30,16 +29,9 @@ pub(super) struct CellPlan<V> {
     pub(super) settling: bool,
 }
 
-/// Why a box cannot be cut, and whether the cell size or the number of grains is to blame.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Refusal {
-    CellSize(String),
-    Count(String),
-}
-
 impl<V: Vector> CellPlan<V> {
-    /// Cells along each axis.
-    pub(super) fn cells(&self) -> Result<[u32; 3], Refusal> {
+    /// Cells along each axis, or what is wrong with the cell size.
+    pub(super) fn cells(&self) -> Result<[u32; 3], String> {
         let mut counts = [1.0; 3];
         for (axis, count) in counts.iter_mut().enumerate().take(V::DIMENSION) {
             *count = self.along(axis);
@@ -47,9 +39,9 @@ impl<V: Vector> CellPlan<V> {
         let total: f64 = counts.iter().product();
         if total > MOST_CELLS {
             let longer = self.wished_size() * (total / MOST_CELLS).powf(1.0 / V::DIMENSION as f64);
-            return Err(Refusal::CellSize(format!(
+            return Err(format!(
                 "makes {total:.3e} cells, more than {MOST_CELLS}; give at least {longer:.3}"
-            )));
+            ));
         }
         let cells = counts.map(|count| count as u32);
         self.check_capacity(cells)?;
@@ -87,34 +79,25 @@ impl<V: Vector> CellPlan<V> {
         root(if dense { 20.0 } else { 10.0 } * volume_per_grain)
     }
 
-    /// HSMC: a cell holds a grain, a displacement ends in a neighbour, all grains find room.
-    fn check_capacity(&self, cells: [u32; 3]) -> Result<(), Refusal> {
+    /// HSMC: a cell holds a grain, and a displacement ends in a neighbour. Cells may start above their capacity.
+    fn check_capacity(&self, cells: [u32; 3]) -> Result<(), String> {
         let Some(maximum) = self.maximum_volume_fraction else { return Ok(()) };
         let grid = Grid::new(self.grid_origin, self.grid_size, &cells, &self.periodic);
         let diameter = self.grain.diameter;
         let sides: Vec<String> = grid.side().components().iter().map(|side| format!("{side:.4}")).collect();
         let cell = sides.join(" × ");
         if grid.shortest_side() < diameter {
-            return Err(Refusal::CellSize(format!(
+            return Err(format!(
                 "gives cells of {cell}, shorter than a displacement by one diameter {diameter}; hsmc needs sides of \
                  at least a diameter (and 4 cells along a periodic axis): enlarge it or domain.size"
-            )));
+            ));
         }
         let capacity = grid.capacity(diameter, maximum);
         if capacity < 1 {
-            return Err(Refusal::CellSize(format!(
+            return Err(format!(
                 "gives cells of {cell} that hold no whole grain at maximum_volume_fraction {maximum}; give at least {}",
                 2.0 * diameter
-            )));
-        }
-        // A vibrating wall extends the grid beyond the place where grains start.
-        let most = (f64::from(capacity) * self.size.product() / grid.cell_volume() * (1.0 + SLACK)).floor();
-        if f64::from(self.count) > most {
-            return Err(Refusal::Count(format!(
-                "{} grains do not fit: cells of {cell} hold {capacity} each at maximum_volume_fraction {maximum}, \
-                 {most} in all; take fewer grains, another cell_size or a larger engine.hsmc.maximum_volume_fraction",
-                self.count
-            )));
+            ));
         }
         Ok(())
     }
@@ -133,7 +116,6 @@ mod tests {
             size: DVec2::splat(size),
             periodic: [true; 3],
             grain: Grain { diameter: 1.0, mass: 1.0 },
-            count,
             final_count: count.into(),
             maximum_volume_fraction: None,
             settling: false,
@@ -145,6 +127,65 @@ mod tests {
         // ν = 0.0785: 100 cells of 10 grains; ν = 0.314: 50 cells of 20.
         assert_eq!(plan(100.0, 1000).cells(), Ok([10, 10, 1]));
         assert_eq!(plan(50.0, 1000).cells(), Ok([7, 7, 1]));
+    }
+
+    /// The rule of defaults, over a range of boxes, densities and boundaries.
+    #[test]
+    fn every_default_obeys_its_rule() {
+        for &(size, count) in
+            &[(30.0, 50), (64.0, 700), (100.0, 3100), (100.0, 3200), (47.0, 2000), (300.0, 90_000)]
+        {
+            let gas = plan(size, count);
+            let per_cell = |cells: [u32; 3]| f64::from(count) / f64::from(cells[0] * cells[1]);
+            let fraction = f64::from(count) * std::f64::consts::FRAC_PI_4 / (size * size);
+            let aim = if fraction >= 0.25 { 20.0 } else { 10.0 };
+            // Rounding to whole cells changes a side by less than half a cell.
+            let side = (aim * size * size / f64::from(count)).sqrt();
+            let slack =
+                |steps: f64| (1.0 - 0.5 * steps * side / size).powi(-2).max(1.0 + steps * side / size);
+            let cells = gas.cells().unwrap();
+            assert!((per_cell(cells) / aim).ln().abs() <= 2.0 * slack(1.0).ln(), "{size} {count}: {cells:?}");
+            let hsmc = CellPlan { maximum_volume_fraction: Some(0.82), ..gas };
+            let cells = hsmc.cells().unwrap();
+            assert!(cells[..2].iter().all(|cells| cells % 2 == 0 && *cells >= 4), "{cells:?}");
+            if cells[0] > 4 {
+                assert!(
+                    (per_cell(cells) / aim).ln().abs() <= 2.0 * slack(2.0).ln(),
+                    "{size} {count}: {cells:?}"
+                );
+            }
+        }
+    }
+
+    /// Gravity or a source: sides from 2 d on, a capacity from 4 on, and nothing much larger.
+    #[test]
+    fn cells_of_a_settling_box_are_the_smallest_that_will_do() {
+        for size in [8.0, 21.0, 40.0, 41.9, 133.0] {
+            for maximum in [0.3, 0.5, 0.79, 0.82, 0.9] {
+                for periodic in [[false; 3], [true; 3]] {
+                    let heap = CellPlan {
+                        maximum_volume_fraction: Some(maximum),
+                        settling: true,
+                        periodic,
+                        ..plan(size, 30)
+                    };
+                    let cells = heap.cells().unwrap();
+                    let side = size / f64::from(cells[0]);
+                    let grid = Grid::<DVec2>::new(heap.grid_origin, heap.grid_size, &cells, &periodic);
+                    let smallest = (4.0 * std::f64::consts::FRAC_PI_4 / maximum).sqrt().max(2.0);
+                    if periodic[0] {
+                        assert!(cells[0] >= 4 && cells[0] % 2 == 0, "{cells:?}");
+                    }
+                    if !periodic[0] || size >= 4.0 * smallest {
+                        assert!(side >= smallest * (1.0 - 1e-9), "{size} {maximum}: {cells:?}");
+                        assert!(grid.capacity(1.0, maximum) >= 4, "{size} {maximum}: {cells:?}");
+                    }
+                    // One cell, or a pair of them, more would be too many.
+                    let more = cells[0] + if periodic[0] { 2 } else { 1 };
+                    assert!(size / f64::from(more) < smallest, "{size} {maximum}: {cells:?}");
+                }
+            }
+        }
     }
 
     #[test]
@@ -178,7 +219,6 @@ mod tests {
             size: DVec3::splat(20.0),
             periodic: [false; 3],
             grain: flat.grain,
-            count: 5,
             final_count: 5,
             maximum_volume_fraction: Some(0.2),
             settling: true,
@@ -188,12 +228,12 @@ mod tests {
     }
 
     #[test]
-    fn too_small_cells_and_too_many_grains_are_refused() {
+    fn cells_too_small_and_too_many_are_refused() {
         let hsmc = CellPlan { maximum_volume_fraction: Some(0.82), ..plan(40.0, 20) };
-        assert!(matches!(CellPlan { wish: Some(0.5), ..hsmc }.cells(), Err(Refusal::CellSize(_))));
-        assert!(matches!(CellPlan { wish: Some(1e-6), ..hsmc }.cells(), Err(Refusal::CellSize(_))));
-        let dense = CellPlan { wish: Some(2.0), count: 1601, ..hsmc };
-        assert!(matches!(dense.cells(), Err(Refusal::Count(_))));
-        assert_eq!(CellPlan { count: 1600, ..dense }.cells(), Ok([20, 20, 1]));
+        assert!(
+            CellPlan { wish: Some(0.5), ..hsmc }.cells().unwrap_err().contains("shorter than a displacement")
+        );
+        assert!(CellPlan { wish: Some(1e-6), ..hsmc }.cells().unwrap_err().contains("more than"));
+        assert_eq!(CellPlan { wish: Some(2.0), ..plan(40.0, 1700) }.cells(), Ok([20, 20, 1]));
     }
 }

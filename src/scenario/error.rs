@@ -29,8 +29,13 @@ pub enum Place {
     Line(usize),
     /// Nowhere: something is missing, or the file as a whole is wrong.
     File,
-    /// In an option of the command line, such as `--set #2 'run.time=-1'`.
-    Option(String),
+    /// In an option of the command line.
+    Option {
+        /// Which one, in the order in which options apply, counted from 0.
+        order: usize,
+        /// How to name it, such as `--set #2 'run.time=-1'`.
+        name: String,
+    },
 }
 
 impl ScenarioError {
@@ -40,12 +45,12 @@ impl ScenarioError {
         ScenarioError { file: file.to_owned(), mistakes: vec![mistake] }
     }
 
-    /// Mistakes in the order of a reader: the file as a whole, its lines, the options.
+    /// Mistakes in the order of a reader: the file as a whole, its lines, the options by number.
     pub(super) fn sorted(file: &str, mut mistakes: Vec<Mistake>) -> Self {
         mistakes.sort_by_key(|mistake| match mistake.place {
             Place::File => (0, 0),
             Place::Line(line) => (1, line),
-            Place::Option(_) => (2, 0),
+            Place::Option { order, .. } => (2, order),
         });
         mistakes.dedup();
         ScenarioError { file: file.to_owned(), mistakes }
@@ -61,7 +66,7 @@ impl fmt::Display for ScenarioError {
             match &mistake.place {
                 Place::Line(line) => write!(f, "{}:{line}: ", self.file)?,
                 Place::File => write!(f, "{}: ", self.file)?,
-                Place::Option(option) => write!(f, "{option}: ")?,
+                Place::Option { name, .. } => write!(f, "{name}: ")?,
             }
             if !mistake.key.is_empty() {
                 write!(f, "{}: ", mistake.key)?;

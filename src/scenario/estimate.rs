@@ -1,13 +1,11 @@
-//! What a run will cost, roughly: steps, memory, size of the log.
+//! What kinetic theory says about a run: collisions, first step, number of steps.
 
 use super::initial::stated_temperature;
-use super::model::{EngineKind, RunLimits, Scenario, Spacing, TimeStep};
+use super::model::{EngineKind, RunLimits, Scenario, TimeStep};
+use super::pace::{falling_speed, falls_for_ever, longest_step, starting_speed};
 use crate::law::boundary::WallKind;
 use crate::law::kinetic_theory::{collision_frequency, cooling_per_collision, haff_time};
 use crate::space::Vector;
-
-/// Grains advanced by one step per second on one core, a cautious figure.
-const PARTICLE_STEPS_PER_SECOND: f64 = 1e7;
 
 /// What kinetic theory says about the initial state; `None` where grains are at rest or none are there.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +14,15 @@ pub(super) struct Rates {
     pub(super) collision_frequency: f64,
     /// Haff's time; `None` for elastic grains [time].
     pub(super) haff_time: Option<f64>,
+}
+
+/// An estimate between two bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Estimate {
+    pub(super) least: f64,
+    pub(super) most: f64,
+    /// Whether `most` may well be exceeded.
+    pub(super) open: bool,
 }
 
 /// The Enskog factor that the engine works with.
@@ -40,52 +47,70 @@ pub(super) fn rates<V: Vector>(scenario: &Scenario<V>) -> Option<Rates> {
 
 /// The first step [time], as near as it can be told without the grains.
 pub(super) fn first_step<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    let speed = largest_speed(scenario);
-    let cell = scenario.grid().shortest_side();
+    step_at(scenario, starting_speed(scenario))
+}
+
+/// A step while the largest speed is `speed` [time].
+fn step_at<V: Vector>(scenario: &Scenario<V>, speed: f64) -> Option<f64> {
     let chosen = match scenario.engine.time_step {
         TimeStep::Fixed(step) => return Some(step),
         TimeStep::CollisionsPerParticle(collisions) => {
             rates(scenario).map(|rates| collisions / rates.collision_frequency)
         }
-        TimeStep::Crossing(fraction) => (speed > 0.0).then(|| fraction * cell / speed),
+        TimeStep::Crossing(fraction) => {
+            (speed > 0.0).then(|| fraction * scenario.grid().shortest_side() / speed)
+        }
     };
-    let gravity = scenario.gravity.length();
-    let bounded = scenario.engine.kind == EngineKind::Hsmc
-        || gravity > 0.0
-        || scenario.boundary.walls().next().is_some();
-    let crossing = (bounded && speed > 0.0).then(|| 0.5 * cell / speed);
-    let fall = (gravity > 0.0).then(|| 0.5 * (2.0 * cell / gravity).sqrt());
-    [chosen, crossing, fall].into_iter().flatten().reduce(f64::min)
+    let longest = longest_step(scenario, speed);
+    [chosen, Some(longest)].into_iter().flatten().reduce(f64::min).filter(|step| step.is_finite())
 }
 
-/// The largest speed to be expected of the initial grains, and of the walls [length/time].
-fn largest_speed<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let thermal = (stated_temperature(scenario) / scenario.grain.mass).sqrt();
-    let tail = (2.0 * f64::from(scenario.count.max(2)).ln()).sqrt();
-    (thermal * tail).max(scenario.boundary.largest_wall_speed())
+/// Steps until the first limit: with the speeds of the start, and with those that gravity gives.
+pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
+    let at_start = steps_at(scenario, starting_speed(scenario))?;
+    if scenario.gravity == V::ZERO || matches!(scenario.engine.time_step, TimeStep::Fixed(_)) {
+        return Some(Estimate { least: at_start, most: at_start, open: false });
+    }
+    let falling = steps_at(scenario, falling_speed(scenario))?;
+    if falls_for_ever(scenario) {
+        return Some(Estimate { least: falling, most: falling, open: true });
+    }
+    // Grains that settle collide more often than those of the start.
+    let open = matches!(scenario.engine.time_step, TimeStep::CollisionsPerParticle(_));
+    Some(Estimate { least: at_start.min(falling), most: at_start.max(falling), open })
 }
 
-/// Steps until the first limit, supposing the first step's length throughout.
-pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    let RunLimits { time, steps, collisions_per_particle, rest } = scenario.run;
-    let step = first_step(scenario)?;
+/// Steps until the first limit while the largest speed is `speed`, or cools down from it.
+fn steps_at<V: Vector>(scenario: &Scenario<V>, speed: f64) -> Option<f64> {
+    let RunLimits { time, steps, collisions_per_particle, .. } = scenario.run;
+    let step = step_at(scenario, speed)?;
     let rates = rates(scenario);
-    let per_step = match scenario.engine.time_step {
-        TimeStep::CollisionsPerParticle(collisions) => {
-            rates.map(|r| collisions.min(step * r.collision_frequency))
-        }
-        _ => rates.map(|rates| step * rates.collision_frequency),
-    };
-    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count) / source.rate);
-    let by_time = time.map(|time| match (scenario.engine.time_step, per_step, rates) {
-        (TimeStep::CollisionsPerParticle(_), Some(per_step), Some(rates)) if cools(scenario) => {
-            collisions_until(scenario, time, rates) / per_step
-        }
+    let per_step = rates.map(|rates| step * rates.collision_frequency);
+    let cooling = rates.filter(|_| cools(scenario));
+    let fixed = matches!(scenario.engine.time_step, TimeStep::Fixed(_));
+    let by_time = time.map(|time| match (cooling, per_step) {
+        (Some(rates), Some(per_step)) if !fixed => collisions_until(scenario, time, rates) / per_step,
         _ => time / step,
     });
-    let by_collisions = collisions_per_particle.and_then(|limit| per_step.map(|per_step| limit / per_step));
-    let by_rest = rest.map(|rest| (poured + rest) / step);
-    [by_time, steps.map(|steps| steps as f64), by_collisions, by_rest].into_iter().flatten().reduce(f64::min)
+    let by_collisions = collisions_per_particle.and_then(|limit| match cooling {
+        Some(rates) if fixed => Some(time_until(scenario, limit, rates) / step),
+        _ => per_step.map(|per_step| limit / per_step),
+    });
+    let by_rest = resting_time(scenario).map(|time| time / step);
+    let limits = [by_time, steps.map(|steps| steps as f64), by_collisions, by_rest];
+    limits.into_iter().flatten().reduce(f64::min).map(f64::ceil)
+}
+
+/// When `run.rest` is over if nothing blocks the source [time].
+pub(super) fn resting_time<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count) / source.rate);
+    scenario.run.rest.map(|rest| poured + rest)
+}
+
+/// Steps that elastic collisions before t = 0 take.
+pub(super) fn steps_before_the_start<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let per_step = first_step(scenario).zip(rates(scenario)).map(|(step, r)| step * r.collision_frequency);
+    per_step.map_or(0.0, |per_step| scenario.initial.equilibrate / per_step)
 }
 
 /// Whether nothing feeds the gas: Haff's law then tells how steps grow.
@@ -108,42 +133,12 @@ fn collisions_until<V: Vector>(scenario: &Scenario<V>, time: f64, rates: Rates) 
     }
 }
 
-/// Seconds on one core.
-pub(super) fn seconds<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    // While a source pours, half of its grains are there on average.
-    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count));
-    let mean = f64::from(scenario.count) + 0.5 * poured;
-    steps(scenario).map(|steps| steps * mean / PARTICLE_STEPS_PER_SECOND)
-}
-
-/// Bytes of one grain's full-precision state.
-fn grain_bytes<V: Vector>() -> f64 {
-    (2 * 8 * V::DIMENSION + 4) as f64
-}
-
-fn most_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    f64::from(scenario.count) + scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count))
-}
-
-/// Memory of the grains, twice over for sorting, and of the cells [bytes].
-pub(super) fn memory<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let cells = scenario.grid().number_of_cells() as f64;
-    most_grains(scenario) * (2.0 * grain_bytes::<V>() + 24.0) + cells * 160.0
-}
-
-/// Size of the log before compression [bytes].
-pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let recordings = match (scenario.record.spacing, scenario.run.time) {
-        (Spacing::Frames(frames) | Spacing::LogFrames(frames), _) => f64::from(frames) + 1.0,
-        (Spacing::Every(every), Some(time)) => (time / every).ceil() + 1.0,
-        (Spacing::Every(every), None) => {
-            let step = first_step(scenario).unwrap_or(0.0);
-            (steps(scenario).unwrap_or(0.0) * step / every).ceil() + 1.0
+/// Time until so many collisions per particle: t₀ (exp(γ₀ τ) − 1).
+fn time_until<V: Vector>(scenario: &Scenario<V>, collisions: f64, rates: Rates) -> f64 {
+    match rates.haff_time {
+        None => collisions / rates.collision_frequency,
+        Some(haff_time) => {
+            haff_time * (collisions * cooling_per_collision::<V>(scenario.restitution.typical())).exp_m1()
         }
-        (Spacing::Ends, _) => 2.0,
-    };
-    let grains = most_grains(scenario);
-    let points = scenario.record.points.map_or(grains, |points| f64::from(points).min(grains));
-    let states = f64::from(scenario.record.states) + 1.0;
-    recordings * (24.0 * points + 4096.0) + states * grains * grain_bytes::<V>()
+    }
 }

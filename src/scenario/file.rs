@@ -45,11 +45,8 @@ fn missing(source: &str) -> String {
     let names = || builtin::list().iter().map(|(name, _)| *name);
     let stem =
         Path::new(source).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let meant = did_you_mean(&stem, names());
-    format!(
-        "is neither a file nor a built-in scenario{meant} (built in: {})",
-        names().collect::<Vec<_>>().join(", ")
-    )
+    let list = format!("built in are {}", names().collect::<Vec<_>>().join(", "));
+    format!("is neither a file nor a built-in scenario; {}", did_you_mean(&stem, names(), &list))
 }
 
 /// The file's name without its ending; never empty and never a path of its own.

@@ -55,6 +55,23 @@ pub fn build<V: Vector>(scenario: &Scenario<V>, saved: Option<Columns<V>>) -> Re
     Ok(Gas::new(grid, scenario.grain, positions, velocities(scenario)))
 }
 
+/// Cells that begin with more grains than make them full; `None` where that stands in a log.
+pub(super) fn cells_above_capacity<V: Vector>(scenario: &Scenario<V>) -> Option<usize> {
+    let Some(capacity) = scenario.capacity() else { return Some(0) };
+    let grid = scenario.grid();
+    match scenario.initial.positions {
+        InitialPositions::Log(_) => None,
+        InitialPositions::Random if !is_crowded(scenario, &grid, capacity) => Some(0),
+        _ => Some(even_counts(scenario, &grid).into_iter().filter(|&count| count > capacity).count()),
+    }
+}
+
+/// Whether so much of the room is taken that places are not drawn again but shared out.
+fn is_crowded<V: Vector>(scenario: &Scenario<V>, grid: &Grid<V>, capacity: u32) -> bool {
+    let room = f64::from(capacity) * scenario.size.product() / grid.cell_volume();
+    f64::from(scenario.count) > CROWDED * room
+}
+
 /// Gives `velocities` zero total momentum and exactly `temperature` = m⟨v²⟩/D of grains of `mass`.
 ///
 /// A single grain keeps its direction: without momentum it would have no temperature.
@@ -119,8 +136,7 @@ fn random_positions<V: Vector>(scenario: &Scenario<V>, grid: &Grid<V>) -> Vec<V>
         let place = |id| place_in(V::ZERO, scenario.size, &mut streams.stream(id));
         return (0..u64::from(scenario.count)).map(place).collect();
     };
-    let room = f64::from(capacity) * scenario.size.product() / grid.cell_volume();
-    if f64::from(scenario.count) > CROWDED * room {
+    if is_crowded(scenario, grid, capacity) {
         return even_positions(scenario, grid);
     }
     let mut occupancy = vec![0_u32; grid.number_of_cells()];

@@ -17,8 +17,8 @@ pub(super) struct Locator {
 pub(super) struct Change {
     /// What it set.
     pub(super) path: KeyPath,
-    /// How to name it, such as `--set #1 'seed=3'`.
-    pub(super) option: String,
+    /// The option's place.
+    pub(super) place: Place,
 }
 
 impl Locator {
@@ -31,13 +31,13 @@ impl Locator {
     pub(super) fn place(&self, path: &KeyPath) -> Place {
         let last = |test: &dyn Fn(&Change) -> bool| self.changes.iter().rev().find(|change| test(change));
         if let Some(change) = last(&|change| change.path.holds(path)) {
-            return Place::Option(change.option.clone());
+            return change.place.clone();
         }
         if let Some(line) = self.line(path.names()) {
             return Place::Line(line);
         }
         if let Some(change) = last(&|change| path.holds(&change.path)) {
-            return Place::Option(change.option.clone());
+            return change.place.clone();
         }
         let ancestors = (1..path.names().len()).rev();
         ancestors

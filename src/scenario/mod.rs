@@ -6,6 +6,7 @@ pub mod builtin;
 mod cells;
 pub mod check;
 mod consistency;
+mod cost;
 pub mod error;
 mod estimate;
 mod file;
@@ -14,6 +15,7 @@ pub mod initial;
 mod locate;
 pub mod model;
 mod overrides;
+mod pace;
 mod path;
 mod read;
 mod reader;
@@ -21,6 +23,7 @@ mod schema;
 mod suggest;
 mod tables;
 mod walls;
+mod warnings;
 
 use toml_edit::{Document, TomlError};
 

@@ -5,7 +5,7 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 use super::error::{Mistake, Place};
 use super::locate::Change;
 use super::path::KeyPath;
-use super::schema::EITHER_OR;
+use super::schema::{EITHER_OR, WITHOUT_A_LOG};
 
 /// What the command line changes in a scenario.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -24,62 +24,48 @@ struct Setting {
     names: Vec<String>,
     component: Option<usize>,
     value: Value,
-    option: String,
 }
 
 impl Overrides {
     /// Changes `document`; returns what was changed and which options are wrong.
     pub(super) fn apply(&self, document: &mut DocumentMut) -> (Vec<Change>, Vec<Mistake>) {
         let (mut changes, mut mistakes) = (Vec::new(), Vec::new());
-        for setting in self.settings() {
-            let option = match &setting {
-                Ok(setting) => setting.option.clone(),
-                Err((option, _)) => option.clone(),
-            };
-            let done = setting.map_err(|(_, message)| message).and_then(|setting| setting.apply(document));
-            match done {
-                Ok(path) => changes.push(Change { path, option }),
-                Err(message) => {
-                    mistakes.push(Mistake { place: Place::Option(option), key: String::new(), message });
-                }
+        for (order, (name, setting)) in self.settings().into_iter().enumerate() {
+            let place = Place::Option { order, name };
+            match setting.and_then(|setting| setting.apply(document)) {
+                Ok(path) => changes.push(Change { path, place }),
+                Err(message) => mistakes.push(Mistake { place, key: String::new(), message }),
             }
         }
         (changes, mistakes)
     }
 
-    fn settings(&self) -> Vec<Result<Setting, (String, String)>> {
+    /// The options by name, in the order in which they apply, with what they ask for.
+    fn settings(&self) -> Vec<(String, Result<Setting, String>)> {
         let mut settings: Vec<_> = self
             .sets
             .iter()
             .enumerate()
-            .map(|(k, text)| {
-                let option = format!("--set #{} '{text}'", k + 1);
-                Setting::parse(text, &option).map_err(|message| (option, message))
-            })
+            .map(|(k, text)| (format!("--set #{} '{text}'", k + 1), Setting::parse(text)))
             .collect();
         if let Some(engine) = &self.engine {
             let names = vec!["engine".to_owned(), "kind".to_owned()];
-            let option = format!("--engine '{engine}'");
-            settings.push(Ok(Setting { names, component: None, value: engine.as_str().into(), option }));
+            let setting = Setting { names, component: None, value: engine.as_str().into() };
+            settings.push((format!("--engine '{engine}'"), Ok(setting)));
         }
         if let Some(seed) = self.seed {
-            let option = format!("--seed {seed}");
-            settings.push(match i64::try_from(seed) {
-                Ok(seed) => Ok(Setting {
-                    names: vec!["seed".to_owned()],
-                    component: None,
-                    value: seed.into(),
-                    option,
-                }),
-                Err(_) => Err((option, format!("is too large; give a seed from 0 to {}", i64::MAX))),
-            });
+            let value =
+                i64::try_from(seed).map_err(|_| format!("is too large; give a seed from 0 to {}", i64::MAX));
+            let setting =
+                |value: i64| Setting { names: vec!["seed".to_owned()], component: None, value: value.into() };
+            settings.push((format!("--seed {seed}"), value.map(setting)));
         }
         settings
     }
 }
 
 impl Setting {
-    fn parse(text: &str, option: &str) -> Result<Self, String> {
+    fn parse(text: &str) -> Result<Self, String> {
         let (path, value) = text.split_once('=').ok_or("has no `=`; write key.path=value")?;
         let (path, component) = split_component(path.trim())?;
         let names: Vec<String> = path.split('.').map(|name| name.trim().to_owned()).collect();
@@ -92,7 +78,7 @@ impl Setting {
         let value = value.trim();
         let mut value = value.parse::<Value>().unwrap_or_else(|_| value.into());
         value.decor_mut().clear();
-        Ok(Setting { names, component, value, option: option.to_owned() })
+        Ok(Setting { names, component, value })
     }
 
     /// Sets the value and returns its path.
@@ -111,6 +97,7 @@ impl Setting {
             return Ok(path.element(index));
         }
         remove_alternatives(table, &tables.join("."), key);
+        let starts_from_log = names_a_log(&self.names, &self.value);
         match table.get_mut(key) {
             Some(Item::Value(old)) => {
                 let decor = old.decor().clone();
@@ -121,7 +108,23 @@ impl Setting {
                 table.insert(key, Item::Value(self.value));
             }
         }
+        if starts_from_log
+            && let Some(initial) = document.get_mut("initial").and_then(Item::as_table_like_mut)
+        {
+            for key in WITHOUT_A_LOG {
+                initial.remove(key);
+            }
+        }
         Ok(path)
+    }
+}
+
+/// Whether a value set at `names` makes the run start from a log.
+fn names_a_log(names: &[String], value: &Value) -> bool {
+    match names.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["initial", "positions"] => value.as_inline_table().is_some_and(|table| table.contains_key("log")),
+        ["initial", "positions", "log"] => true,
+        _ => false,
     }
 }
 
@@ -228,6 +231,19 @@ mod tests {
             after("[initial]\nvelocities = \"rest\"\n", &["initial.velocities.maxwell=2"]).replace(' ', ""),
             "[initial]\nvelocities={maxwell=2}\n"
         );
+    }
+
+    #[test]
+    fn a_start_from_a_log_replaces_the_start_of_a_gas() {
+        let text = "[initial]\npositions = \"random\"\nvelocities = { maxwell = 1 }\nequilibrate = 10\n";
+        for set in ["initial.positions={log='a.mcap'}", "initial.positions.log=a.mcap"] {
+            let left = after(text, &[set]);
+            assert!(
+                left.contains("a.mcap") && !left.contains("velocities") && !left.contains("equi"),
+                "{left}"
+            );
+        }
+        assert!(after(text, &["initial.positions=lattice"]).contains("equilibrate = 10"));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! From a table of keys to a checked scenario.
 
-use super::cells::{CellPlan, Refusal};
+use super::cells::CellPlan;
 use super::consistency::{self, Story};
 use super::model::{
     EngineChoice, EngineKind, HsmcRules, Initial, InitialPositions, InitialVelocities, Scenario,
 };
+use super::pace;
 use super::reader::Section;
 use super::tables::engine::{CellRestitution, EngineTable};
 use super::tables::initial::InitialTable;
@@ -50,7 +51,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     let grid = cut(root, &engine, &particles, &story);
     let (grid_origin, grid_size, cells) = grid?;
     consistent?;
-    Some(Scenario {
+    let scenario = Scenario {
         name: name.to_owned(),
         title: head.title?,
         source_text,
@@ -70,7 +71,9 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         run: run?,
         record: record?,
         units: units?,
-    })
+    };
+    pace::check_fixed_step(root, &scenario)?;
+    Some(scenario)
 }
 
 fn count<V: Vector>(root: &Section<'_>, table: &ParticlesTable, size: Option<V>) -> Option<u32> {
@@ -110,20 +113,14 @@ fn cut<V: Vector>(
         size,
         periodic: std::array::from_fn(|axis| boundary.is_periodic(axis)),
         grain: particles.grain?,
-        count,
         final_count: u64::from(count) + source.map_or(0, |source| u64::from(source.count)),
         maximum_volume_fraction: if hsmc { Some(maximum?) } else { None },
         settling: source.is_some() || story.gravity? != V::ZERO,
     };
     match plan.cells() {
         Ok(cells) => Some((grid_origin, grid_size, cells)),
-        Err(Refusal::CellSize(message)) => {
+        Err(message) => {
             root.mistake("engine.cell_size", message);
-            None
-        }
-        Err(Refusal::Count(message)) => {
-            let key = particles.amount.map_or("count", particles::Amount::key);
-            root.mistake(&format!("particles.{key}"), message);
             None
         }
     }

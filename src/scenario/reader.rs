@@ -251,7 +251,10 @@ impl<'a> Section<'a> {
             Some((_, value)) => Found::Value(*value),
             None => self.wrong(
                 key,
-                format!("\"{text}\" is not known{}; choose one of {list}", did_you_mean(text, known())),
+                format!(
+                    "\"{text}\" is not known; {}",
+                    did_you_mean(text, known(), &format!("choose one of {list}"))
+                ),
             ),
         }
     }

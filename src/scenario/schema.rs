@@ -69,6 +69,10 @@ pub const MEASURES: &[&str] = &[
     "pressure",
 ];
 
+/// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the
+/// command line removes them.
+pub(super) const WITHOUT_A_LOG: &[&str] = &["velocities", "equilibrate"];
+
 /// Keys of which a scenario has one; setting one on the command line removes the others.
 pub(super) const EITHER_OR: &[(&str, &[&[&str]])] = &[
     ("particles", &[&["count"], &["volume_fraction"]]),

@@ -13,9 +13,13 @@ pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, candidate)| candidate)
 }
 
-/// `; did you mean …?`, or nothing.
-pub(super) fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(name, candidates).map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
+/// `did you mean …?` where a candidate is near, the `remedy` where none is: one ending, never both.
+pub(super) fn did_you_mean<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+    remedy: &str,
+) -> String {
+    nearest(name, candidates).map_or_else(|| remedy.to_owned(), |meant| format!("did you mean `{meant}`?"))
 }
 
 /// Edits that turn `a` into `b`: insert, delete, replace, swap neighbours (Damerau 1964).

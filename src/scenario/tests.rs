@@ -108,7 +108,7 @@ fn all_mistakes_come_at_once_with_their_places() {
     let error = parse("bad.toml", text, &with(&["seed=-3", "oops"])).unwrap_err();
     let text = error.to_string();
     for expected in [
-        "bad.toml:3: engine.kind: \"hsms\" is not known; did you mean `hsmc`?",
+        "bad.toml:3: engine.kind: \"hsms\" is not known; did you mean `hsmc`?\n",
         "bad.toml:5: domain.size[1]: -1 is out of bounds",
         "bad.toml:7: particles.count: 1.5 must be a whole number",
         "bad.toml:8: particles.diamter: is not a known key; did you mean `diameter`?",
@@ -132,9 +132,28 @@ fn options_are_named_in_their_mistakes() {
     );
     let overrides = Overrides { engine: Some("cuba".to_owned()), seed: Some(u64::MAX), ..Default::default() };
     let text = load("shear", &overrides).unwrap_err().to_string();
-    assert!(text.contains("--engine 'cuba': engine.kind: \"cuba\" is not known"), "{text}");
+    assert!(
+        text.contains(
+            "--engine 'cuba': engine.kind: \"cuba\" is not available in this version; choose one of"
+        ),
+        "{text}"
+    );
     assert!(text.contains("choose one of \"dsmc\", \"cba\", \"hsmc\""), "{text}");
     assert!(text.contains("--seed 18446744073709551615: is too large"), "{text}");
+    let sets = ["seed=-1", "oops", "run.time=-1", "domain.size[0]=-4", "title=''"];
+    let text =
+        load("sedimentation", &Overrides { sets: with(&sets).sets, ..overrides }).unwrap_err().to_string();
+    let starts: Vec<&str> = text.lines().map(|line| line.split(['\'', ':']).next().unwrap().trim()).collect();
+    let numbers = [
+        "--set #1",
+        "--set #2",
+        "--set #3",
+        "--set #4",
+        "--set #5",
+        "--engine",
+        "--seed 18446744073709551615",
+    ];
+    assert_eq!(starts, numbers, "{text}");
 }
 
 #[test]

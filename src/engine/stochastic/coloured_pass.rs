@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn spans_cover_every_axis_in_twos_and_threes() {
-        for cells in 1..40 {
+        for cells in 1_u32..40 {
             for periodic in [false, true] {
                 if periodic && (cells < 4 || !cells.is_multiple_of(2)) {
                     continue;

@@ -11,6 +11,17 @@ pub enum TimeStep {
     Crossing(f64),
 }
 
+impl TimeStep {
+    /// The share of min(L/v_max, √(2L/|g|)) that a step may last where a jump over a cell could matter:
+    /// an adaptive step keeps a margin of two, a fixed one is obeyed as long as nothing jumps.
+    pub fn largest_crossing(self) -> f64 {
+        match self {
+            TimeStep::Fixed(_) => 1.0,
+            TimeStep::CollisionsPerParticle(_) | TimeStep::Crossing(_) => 0.5,
+        }
+    }
+}
+
 /// Where the Enskog factor g(ν) takes its density from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnskogFactor {

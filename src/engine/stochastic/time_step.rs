@@ -13,12 +13,6 @@ use crate::matter::gas::Gas;
 use crate::random::Phase;
 use crate::space::Vector;
 
-/// An adaptive step lets grains cross at most this share of a cell where a jump over a cell could matter.
-const LARGEST_CROSSING: f64 = 0.5;
-
-/// A fixed step is obeyed as long as no grain can jump over a cell.
-const LARGEST_FIXED_CROSSING: f64 = 1.0;
-
 /// Below this mean occupancy, cells hold too few pairs to tell their temperature.
 const FEWEST_GRAINS_PER_CELL: f64 = 0.5;
 
@@ -32,10 +26,7 @@ pub(crate) fn time_step<V: Vector, R: Restitution>(
 ) -> Result<(f64, bool), EngineError> {
     let speed = state.largest_speed.max(laws.boundary.largest_wall_speed());
     let side = gas.grid().shortest_side();
-    let allowed = match choice {
-        TimeStep::Fixed(_) => LARGEST_FIXED_CROSSING,
-        TimeStep::CollisionsPerParticle(_) | TimeStep::Crossing(_) => LARGEST_CROSSING,
-    };
+    let allowed = choice.largest_crossing();
     let longest = if jumps_matter { longest_step(laws, allowed, side, speed) } else { f64::INFINITY };
     let wish = match choice {
         TimeStep::Fixed(step) if step > longest => {
@@ -53,7 +44,7 @@ pub(crate) fn time_step<V: Vector, R: Restitution>(
         return Ok((step, step < wish));
     }
     // No collisions to be expected and no cap: let grains cross their cells.
-    let crossing = LARGEST_CROSSING * side / speed;
+    let crossing = allowed * side / speed;
     if crossing.is_finite() {
         Ok((crossing, false))
     } else {

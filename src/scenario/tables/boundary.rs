@@ -49,8 +49,8 @@ fn read_axis<V: Vector>(boundary: &Section<'_>, name: &str, axis: usize) -> Opti
         Some("periodic") => return Some(AxisTable::Periodic),
         Some("open") => return Some(AxisTable::Faces([FaceTable::Open; 2])),
         Some(text) => {
-            let meant = did_you_mean(text, ["periodic", "open"]);
-            boundary.mistake(name, format!("\"{text}\" is not known{meant}; write {AXIS_FORMS}"));
+            let remedy = did_you_mean(text, ["periodic", "open"], &format!("write {AXIS_FORMS}"));
+            boundary.mistake(name, format!("\"{text}\" is not known; {remedy}"));
             return None;
         }
         None => {}
@@ -83,8 +83,8 @@ fn read_face<V: Vector>(axis_table: &Section<'_>, side: &str, axis: usize) -> Op
             "periodic" => axis_table
                 .mistake(side, "an axis is periodic as a whole; write the axis itself = \"periodic\""),
             _ => {
-                let meant = did_you_mean(text, ["open"]);
-                axis_table.mistake(side, format!("\"{text}\" is not known{meant}; write {FACE_FORMS}"));
+                let remedy = did_you_mean(text, ["open"], &format!("write {FACE_FORMS}"));
+                axis_table.mistake(side, format!("\"{text}\" is not known; {remedy}"));
             }
         }
         return None;

@@ -39,12 +39,19 @@ pub(in crate::scenario) enum CellRestitution {
     AtLeast(f64),
 }
 
+/// Engines of the field that this version does not have: no slips of the pen.
+const ELSEWHERE: &[&str] = &["cuba", "esmc", "event-driven", "event_driven", "edmd", "md", "dem", "bd"];
+
 /// Reads `[engine]`.
 pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>) -> EngineTable {
     let engine = root.section("engine", schema::ENGINE);
     let kinds = EngineKind::ALL.map(|kind| (kind.name(), kind));
     let names = kinds.map(|(name, _)| format!("\"{name}\"")).join(", ");
+    let named = engine.item("kind").and_then(|item| item.as_str());
     let kind = if root.has("engine") && !engine.exists() {
+        None
+    } else if let Some(name) = named.filter(|name| ELSEWHERE.contains(name)) {
+        engine.mistake("kind", format!("\"{name}\" is not available in this version; choose one of {names}"));
         None
     } else {
         engine.choice("kind", &kinds).required(&engine, "kind", &format!("choose one of {names}"))

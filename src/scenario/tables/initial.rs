@@ -48,8 +48,8 @@ fn positions(initial: &Section<'_>) -> Option<InitialPositions> {
         Some("random") => Some(InitialPositions::Random),
         Some("lattice") => Some(InitialPositions::Lattice),
         Some(text) => {
-            let meant = did_you_mean(text, ["random", "lattice"]);
-            initial.mistake(KEY, format!("\"{text}\" is not known{meant}; write {POSITION_FORMS}"));
+            let remedy = did_you_mean(text, ["random", "lattice"], &format!("write {POSITION_FORMS}"));
+            initial.mistake(KEY, format!("\"{text}\" is not known; {remedy}"));
             None
         }
         None => {
@@ -65,8 +65,8 @@ fn velocities(initial: &Section<'_>) -> Option<Option<InitialVelocities>> {
     match item.as_str() {
         Some("rest") => return Some(Some(InitialVelocities::Rest)),
         Some(text) => {
-            let meant = did_you_mean(text, ["rest"]);
-            initial.mistake(KEY, format!("\"{text}\" is not known{meant}; write {VELOCITY_FORMS}"));
+            let remedy = did_you_mean(text, ["rest"], &format!("write {VELOCITY_FORMS}"));
+            initial.mistake(KEY, format!("\"{text}\" is not known; {remedy}"));
             return None;
         }
         None => {}

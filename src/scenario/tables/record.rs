@@ -106,11 +106,9 @@ fn measures(record: &Section<'_>) -> Option<Option<Vec<String>>> {
             }
             _ => {
                 let name = value.as_str().map_or_else(|| value.to_string().trim().to_owned(), str::to_owned);
-                let meant = did_you_mean(&name, MEASURES.iter().copied());
-                record.mistake(
-                    KEY,
-                    format!("\"{name}\" is not a measure{meant}; choose from {}", MEASURES.join(", ")),
-                );
+                let choose = format!("choose from {}", MEASURES.join(", "));
+                let remedy = did_you_mean(&name, MEASURES.iter().copied(), &choose);
+                record.mistake(KEY, format!("\"{name}\" is not a measure; {remedy}"));
                 sound = false;
             }
         }

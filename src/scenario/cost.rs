@@ -1,0 +1,131 @@
+//! What a run will cost, roughly: grains to move, memory, log, time on one core.
+
+use super::estimate::{self, Estimate};
+use super::model::{EngineKind, Scenario, Spacing};
+use crate::law::boundary::Face;
+use crate::space::Vector;
+
+/// Up to so many grains the columns stay in the caches of a processor.
+const CACHED_GRAINS: f64 = 2e5;
+/// Recording one grain: measures, hash, frame, compression [s].
+const RECORDING: f64 = 200e-9;
+/// A step without grains [s], and what each empty cell adds to it [s].
+const EMPTY_STEP: f64 = 4e-6;
+const EMPTY_CELL: f64 = 1.5e-9;
+/// Memory of the program itself, and of one that writes a report [bytes].
+const PROGRAM: f64 = 7e6;
+const REPORTING_PROGRAM: f64 = 30e6;
+/// Bytes of a point of a frame.
+const POINT: f64 = 28.0;
+/// Bytes of a recording beside its points.
+const RECORD: f64 = 4096.0;
+
+/// Grains at the end, with all that are poured.
+pub(super) fn final_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    f64::from(scenario.count) + scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count))
+}
+
+/// Whether grains come to lie on a face: gravity along an axis that has an end.
+pub(super) fn settles<V: Vector>(scenario: &Scenario<V>) -> bool {
+    (0..V::DIMENSION).any(|axis| {
+        let side = usize::from(scenario.gravity[axis] > 0.0);
+        let faces = scenario.boundary.faces(axis);
+        scenario.gravity[axis] != 0.0 && faces.is_some_and(|faces| matches!(faces[side], Face::Wall(_)))
+    })
+}
+
+/// How long a run lasts in its own time [time].
+fn duration<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+    let by_steps = || Some(estimate::steps(scenario)?.least * estimate::first_step(scenario)?);
+    let limits = [scenario.run.time, estimate::resting_time(scenario)];
+    limits.into_iter().flatten().reduce(f64::min).or_else(by_steps)
+}
+
+/// Grains on an average over the run.
+fn mean_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let present = f64::from(scenario.count);
+    let (Some(source), Some(duration)) = (&scenario.source, duration(scenario)) else { return present };
+    let (poured, pouring) = (f64::from(source.count), f64::from(source.count) / source.rate);
+    let share = if duration < pouring { 0.5 * duration / pouring } else { 1.0 - 0.5 * pouring / duration };
+    present + poured * share
+}
+
+/// Seconds of a run on one core, its recordings and its equilibration included. The constants are fitted
+/// to processor times of short single-threaded runs on one machine; another may differ by a factor of two.
+pub(super) fn seconds<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
+    let steps = estimate::steps(scenario)?;
+    let recording = recordings(scenario).made * mean_grains(scenario) * RECORDING;
+    let before = estimate::steps_before_the_start(scenario);
+    let cost = |steps: f64| (steps + before) * seconds_per_step(scenario) + recording;
+    Some(Estimate { least: cost(steps.least), most: cost(steps.most), ..steps })
+}
+
+fn seconds_per_step<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let (grains, cells) = (mean_grains(scenario), scenario.grid().number_of_cells() as f64);
+    let cached = grains <= CACHED_GRAINS;
+    let by_dimension = |flat: f64, deep: f64| if V::DIMENSION == 2 { flat } else { deep };
+    let hybrid = scenario.engine.kind == EngineKind::Hsmc;
+    let moving = match (hybrid, cached) {
+        (false, true) => by_dimension(25e-9, 28e-9),
+        (false, false) => by_dimension(36e-9, 50e-9),
+        (true, true) => by_dimension(33e-9, 48e-9),
+        (true, false) => by_dimension(55e-9, 83e-9),
+    };
+    // Grains that lie in full cells are refused, and collide as cells.
+    let packed = match settles(scenario) {
+        true if hybrid => 175e-9 + 25e-9 * f64::from(scenario.engine.hsmc.sweeps),
+        true => 160e-9,
+        false => 0.0,
+    };
+    // In cells with few grains the cell itself is the work.
+    let thin = if hybrid { 35e-9 } else { 20e-9 } * cells.min(grains);
+    grains * packed.max(moving) + thin + EMPTY_CELL * cells + EMPTY_STEP
+}
+
+/// Bytes of one grain's full-precision state.
+fn grain_bytes<V: Vector>() -> f64 {
+    (2 * 8 * V::DIMENSION + 4) as f64
+}
+
+/// The most memory that a run holds [bytes]: grains twice over for sorting and again for the saved
+/// state, and cells; or, when it is over, all frames for its report.
+pub(super) fn memory<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let cells = scenario.grid().number_of_cells() as f64;
+    let per_cell = if V::DIMENSION == 2 { 24.0 } else { 32.0 };
+    let running = PROGRAM + final_grains(scenario) * (4.0 * grain_bytes::<V>() + 30.0) + cells * per_cell;
+    let reporting = REPORTING_PROGRAM + recordings(scenario).made * mean_points(scenario) * POINT;
+    running.max(reporting)
+}
+
+/// Points of a frame, on an average over the run.
+fn mean_points<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let grains = mean_grains(scenario);
+    scenario.record.points.map_or(grains, |points| f64::from(points).min(grains))
+}
+
+/// Recordings of a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recordings {
+    /// As many as `[record]` asks for.
+    pub(super) wanted: f64,
+    /// As many as there can be: one at the start and one per step.
+    pub(super) made: f64,
+}
+
+pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
+    let wanted = match scenario.record.spacing {
+        Spacing::Frames(frames) | Spacing::LogFrames(frames) => f64::from(frames) + 1.0,
+        Spacing::Every(every) => duration(scenario).map_or(1.0, |duration| (duration / every).ceil()) + 1.0,
+        Spacing::Ends => 2.0,
+    };
+    let most =
+        estimate::steps(scenario).filter(|steps| !steps.open).map_or(f64::INFINITY, |steps| steps.most);
+    Recordings { wanted, made: wanted.min(most + 1.0) }
+}
+
+/// Size of the log before compression [bytes].
+pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let states = f64::from(scenario.record.states) + 1.0;
+    recordings(scenario).made * (POINT * mean_points(scenario) + RECORD)
+        + states * final_grains(scenario) * grain_bytes::<V>()
+}

@@ -1,0 +1,250 @@
+//! What may spoil a run that is not wrong.
+
+use super::bound::{rounded, shown};
+use super::check::{bytes, count_of, grains_per_cell};
+use super::estimate;
+use super::model::{EngineKind, EnskogFactor, Scenario, Spacing, TimeStep};
+use super::{cost, initial, pace};
+use crate::law::boundary::Face;
+use crate::law::kinetic_theory::mean_free_path;
+use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::space::Vector;
+
+/// Logs above this size are seldom meant [bytes].
+const LARGE_LOG: f64 = 1e10;
+
+/// Everything that may spoil `scenario` on a machine that has so much memory to give [bytes].
+pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> Vec<String> {
+    let groups = [
+        engine(scenario),
+        cells(scenario),
+        gravity(scenario),
+        time_step(scenario),
+        recordings(scenario),
+        memory(scenario, available),
+    ];
+    groups.into_iter().flatten().collect()
+}
+
+/// What the engine lacks.
+fn engine<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let kind = scenario.engine.kind;
+    if kind == EngineKind::Dsmc && scenario.volume_fraction() > 0.1 {
+        warnings.push(format!(
+            "dsmc treats grains as points: at ν = {} it collides {} times too rarely; cba and hsmc do not",
+            rounded(scenario.volume_fraction()),
+            rounded(V::contact_correlation(scenario.volume_fraction()))
+        ));
+    }
+    if kind != EngineKind::Hsmc && cost::settles(scenario) {
+        warnings.push(format!(
+            "{} has no excluded volume: under gravity grains pile up beyond any possible density; hsmc has one",
+            kind.name()
+        ));
+    }
+    warnings
+}
+
+/// Cells of a size, or with a number of grains, that mislead.
+fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let engine = &scenario.engine;
+    let per_cell = grains_per_cell(scenario, f64::from(scenario.count));
+    let local = engine.kind != EngineKind::Dsmc && engine.enskog_factor == EnskogFactor::Local;
+    let gas = scenario.source.is_none() && scenario.gravity == V::ZERO;
+    if local && gas && scenario.count > 0 && per_cell < 5.0 {
+        warnings.push(format!(
+            "{} grains per cell: below 5 the local Enskog factor follows noise; enlarge engine.cell_size or \
+             write enskog_factor = \"smoothed\"",
+            rounded(per_cell)
+        ));
+    }
+    let driven = scenario.boundary.largest_wall_speed() > 0.0;
+    let longest = scenario.grid().side().components().into_iter().fold(0.0, f64::max);
+    let path = mean_free_path::<V>(scenario.grain, scenario.volume_fraction());
+    if driven && scenario.count > 0 && longest > 1.1 * path {
+        warnings.push(format!(
+            "cells of {} are longer than the mean free path {}: they raise the viscosity of a driven flow",
+            rounded(longest),
+            rounded(path)
+        ));
+    }
+    if let Some(capacity) = scenario.capacity().filter(|&capacity| capacity < 4) {
+        warnings.push(format!(
+            "a cell holds {capacity} grains only: from 4 on hsmc is sound; enlarge engine.cell_size"
+        ));
+    }
+    if let Some(above) = initial::cells_above_capacity(scenario).filter(|&above| above > 0) {
+        warnings.push(format!(
+            "{above} cells start above their capacity: they admit nobody until they empty; take fewer grains, another \
+             engine.cell_size or a larger engine.hsmc.maximum_volume_fraction if that is not meant"
+        ));
+    }
+    warnings
+}
+
+/// Where gravity takes the grains.
+fn gravity<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for axis in (0..V::DIMENSION).filter(|&axis| scenario.gravity[axis] != 0.0) {
+        let Some(faces) = scenario.boundary.faces(axis) else { continue };
+        let (side, name) = if scenario.gravity[axis] < 0.0 { (0, "lower") } else { (1, "upper") };
+        if faces[side] == Face::Open {
+            let axis = V::AXIS_NAMES[axis];
+            warnings.push(format!("gravity pulls grains out of the open face boundary.{axis}.{name}"));
+        }
+    }
+    warnings
+}
+
+/// A fixed step that does not fit what the gas becomes.
+fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let TimeStep::Fixed(step) = scenario.engine.time_step else { return warnings };
+    let (start, later) = (pace::starting_speed(scenario), pace::falling_speed(scenario));
+    let too_long = |speed: f64| step > pace::longest_step(scenario, speed);
+    if too_long(later) {
+        let (who, speed) = if too_long(start) {
+            ("the fastest grain of the start moves", start)
+        } else {
+            ("a grain that falls freely comes to move", later)
+        };
+        warnings.push(format!(
+            "the fixed step {} will be too long: {who} at {}, and a step that is too long ends the run; \
+             engine.time_step.fixed = {} would do",
+            shown(step),
+            rounded(speed),
+            pace::rounded_down(pace::longest_step(scenario, later))
+        ));
+    }
+    let undriven = scenario.gravity == V::ZERO && scenario.boundary.largest_wall_speed() == 0.0;
+    let elastic = scenario.restitution == RestitutionLaw::Constant(Constant(1.0));
+    if undriven && !elastic {
+        warnings.push(
+            "a fixed step suits a gas that cools badly: time_step = { collisions_per_particle = 0.1 } grows with it"
+                .to_owned(),
+        );
+    }
+    warnings
+}
+
+/// More recordings, or larger ones, than anybody wants.
+fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let recordings = cost::recordings(scenario);
+    let key = if matches!(scenario.record.spacing, Spacing::Every(_)) { "every" } else { "frames" };
+    // The number of steps is an estimate, and may be a little short.
+    if let Some(steps) = estimate::steps(scenario).filter(|_| recordings.wanted > 1.2 * recordings.made) {
+        warnings.push(format!(
+            "record.{key} asks for {} recordings of about {} steps: every step will be recorded, none more often",
+            count_of(recordings.wanted),
+            count_of(steps.most)
+        ));
+    }
+    let size = cost::log_size(scenario);
+    if size > LARGE_LOG {
+        let remedy = if key == "every" { "a larger record.every" } else { "fewer record.frames" };
+        warnings.push(format!(
+            "the log takes about {} before compression; {remedy}, record.points or record.states make it smaller",
+            bytes(size)
+        ));
+    }
+    warnings
+}
+
+/// More memory than there is.
+fn memory<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> Vec<String> {
+    let (needed, available) = (cost::memory(scenario), available.map(|bytes| bytes as f64));
+    let lacking = available.filter(|&available| needed > available);
+    let warning = |available| {
+        format!(
+            "the run takes about {} of memory, and {} are free; take fewer grains, cells, frames or points",
+            bytes(needed),
+            bytes(available)
+        )
+    };
+    lacking.map(warning).into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::check::check_for_memory;
+    use crate::scenario::model::AnyScenario;
+    use crate::scenario::{Overrides, load};
+
+    fn scenario(name: &str, sets: &[&str]) -> AnyScenario {
+        let sets = sets.iter().map(ToString::to_string).collect();
+        load(name, &Overrides { sets, ..Default::default() }).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn warned(name: &str, sets: &[&str]) -> String {
+        check_for_memory(&scenario(name, sets), None).warnings.join("\n")
+    }
+
+    #[test]
+    fn what_may_spoil_the_result_is_said() {
+        assert!(!warned("shear", &["engine.kind=dsmc"]).contains("as points"));
+        assert!(warned("cooling", &["engine.kind=dsmc"]).contains("as points"));
+        assert!(warned("cooling", &["engine.kind=cba", "engine.cell_size=3"]).contains("below 5"));
+        assert!(warned("shear", &["engine.cell_size=8"]).contains("mean free path 2.35"));
+        assert!(warned("heap", &["boundary.y.lower=open"]).contains("boundary.y.lower"));
+        for quiet in ["heap", "heap-full", "pipe", "cooling", "clustering", "sedimentation"] {
+            assert_eq!(warned(quiet, &[]), "", "{quiet}");
+        }
+    }
+
+    #[test]
+    fn points_under_gravity_pile_up() {
+        for kind in ["dsmc", "cba"] {
+            let kind = format!("engine.kind={kind}");
+            assert!(warned("heap", &[&kind]).contains("beyond any possible density"));
+            assert!(warned("sedimentation", &[&kind]).contains("no excluded volume"));
+            assert!(!warned("pipe", &[&kind]).contains("no excluded volume"));
+        }
+    }
+
+    #[test]
+    fn a_fixed_step_that_a_fall_makes_too_long_is_foreseen() {
+        // √(2 · 9.81 · 0.04) = 0.886: 0.002/0.886 = 2.26e-3.
+        let warning = warned("sedimentation", &["engine.time_step.fixed=3e-3"]);
+        assert!(warning.contains("falls freely comes to move at 0.8859"), "{warning}");
+        assert!(warning.contains("engine.time_step.fixed = 0.0022"), "{warning}");
+        assert_eq!(warned("sedimentation", &["engine.time_step.fixed=2e-3"]), "");
+        // The spout of a heap is low; its box is not.
+        let filled = ["particles.count=10", "engine.time_step.fixed=0.15"];
+        assert!(warned("heap", &filled).contains("17.89"), "{}", warned("heap", &filled));
+        // The tail of a Maxwellian at the start.
+        let tail = ["engine.time_step.fixed=1", "engine.cell_size=2.5"];
+        assert!(warned("shear", &tail).contains("the fastest grain of the start"));
+    }
+
+    #[test]
+    fn cells_that_start_too_full_are_allowed_and_said() {
+        let full = ["particles.volume_fraction=0.9", "initial.velocities={maxwell=1}"];
+        let warning = warned("cooling", &full);
+        assert!(warning.contains("cells start above their capacity: they admit nobody"), "{warning}");
+        let share = ["particles.volume_fraction=0.8", "initial.positions=lattice"];
+        assert_eq!(warned("cooling", &share), "");
+    }
+
+    #[test]
+    fn recordings_beyond_reason_are_said() {
+        let often = warned("heap", &["record.every=1e-9"]);
+        assert!(often.contains("of about 64000 steps: every step will be recorded"), "{often}");
+        assert!(!often.contains("TB"), "{often}");
+        let all = ["record.points=all", "record.frames=4000", "particles.count=100000"];
+        let large = warned("clustering", &all);
+        assert!(large.contains("record.frames asks for 4001 recordings of about 1000 steps"), "{large}");
+        let large = warned("clustering", &["record.points=all", "record.frames=4000", "run={steps=5000}"]);
+        assert!(large.contains("the log takes about 11"), "{large}");
+    }
+
+    #[test]
+    fn memory_is_compared_with_what_is_free() {
+        let clustering = scenario("clustering", &[]);
+        assert!(check_for_memory(&clustering, Some(16_000_000_000)).warnings.is_empty());
+        let warnings = check_for_memory(&clustering, Some(50_000_000)).warnings;
+        assert!(warnings[0].contains("50.0 MB are free"), "{warnings:?}");
+    }
+}
