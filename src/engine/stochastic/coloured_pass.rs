@@ -215,7 +215,7 @@ mod tests {
                 assert_eq!(spans.last().map(|s| s.end), Some(cells));
                 assert!(spans.windows(2).all(|w| w[0].end == w[1].start));
                 assert!(cells < 4 || spans.iter().all(|s| (2..=3).contains(&s.len())));
-                assert!(!periodic || spans.len() % 2 == 0);
+                assert!(!periodic || spans.len().is_multiple_of(2));
             }
         }
     }
