@@ -1,6 +1,8 @@
 //! What no step may break, on random small scenarios: the number of grains, their identities, the
 //! order of cells, the capacity, the box, momentum, energy, and the way into a log and back.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::collections::BTreeSet;
 
 use grainflow::engine::NoLaps;

@@ -1,6 +1,8 @@
 //! The contract: the same bits for any number of threads, with and without anybody looking, for any
 //! limit and any recording, and after a restart.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod small_scenarios;
 
 use std::path::Path;
@@ -175,7 +177,7 @@ fn with_restart(scenario: &AnyScenario, log: Option<&Path>) -> (End, Vec<Vec<u64
         while simulation.end_reason().is_none() {
             simulation.advance(&mut NoLaps).unwrap();
             let steps = simulation.totals().steps;
-            if steps % LOOKS == 0 {
+            if steps.is_multiple_of(LOOKS) {
                 let look = look(&mut simulation);
                 looks.extend((steps > SAVED_AT).then_some(look));
             }

@@ -1,5 +1,7 @@
 //! The rules of the house that no compiler knows: floors, useful absences, sizes, names.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

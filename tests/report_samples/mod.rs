@@ -151,13 +151,16 @@ pub(crate) fn heap() -> Sample {
             ));
         }
     }
-    let summary = summary(json!({
+    Sample { name: "heap", log, summary: heap_summary() }
+}
+
+fn heap_summary() -> Map<String, Value> {
+    summary(json!({
         "scenario": "heap", "engine": "hsmc", "dimension": 2, "particles_initial": 0, "particles_final": 3000, "volume_fraction": 0.0368,
         "collisions": 123_456_789, "collisions_per_particle": 1280.4, "simulated_time": 6400.0, "kinetic_energy_initial": 0.0,
         "kinetic_energy_final": 1.4, "temperature": 4.7e-4, "heap_slope": 0.571, "heap_slope_standard_error": 0.012,
         "centre_of_mass_height": 10.61, "centre_of_mass_height_standard_error": null
-    }));
-    Sample { name: "heap", log, summary }
+    }))
 }
 
 pub(crate) fn cooling() -> Sample {
@@ -336,14 +339,17 @@ pub(crate) fn pipe() -> Sample {
         vec![column("frequency", Dimension { time: -1, ..PURE }), column("power", TIME)],
         vec![frequencies, power],
     ));
-    let summary = summary(json!({
+    Sample { name: "pipe", log, summary: pipe_summary() }
+}
+
+fn pipe_summary() -> Map<String, Value> {
+    summary(json!({
         "scenario": "pipe", "engine": "hsmc", "dimension": 2, "particles_initial": 3870, "particles_final": 3870, "volume_fraction": 0.38,
         "collisions": 1_160_000, "collisions_per_particle": 600.0, "simulated_time": 200.0, "kinetic_energy_initial": 3870.0,
         "kinetic_energy_final": 4.8e6, "temperature": 6.0, "density_contrast": 0.56, "density_contrast_standard_error": 0.011,
         "contrast_over_poisson": 3.4, "contrast_over_poisson_standard_error": 0.07, "spectrum_slope": -1.61, "spectrum_slope_standard_error": 0.04,
         "flow_rate": 470.0, "flow_rate_standard_error": 4.0, "flow_velocity": -49.0, "flow_velocity_standard_error": 0.4
-    }));
-    Sample { name: "pipe", log, summary }
+    }))
 }
 
 /// Three dimensions, cut short.

@@ -77,6 +77,10 @@ impl<R: Restitution> PairCollisions<R> {
             return;
         }
         let (mut bound, sum_of_squares) = SpeedBound::of(velocities);
+        if !sum_of_squares.is_finite() {
+            // Endless speeds would mean endless candidates; the end of the step says what is wrong.
+            return;
+        }
         let pairs = enskog_factor * f64::from(grains) * f64::from(grains - 1);
         tally.collision_rate += self.expected_rate::<V>(pairs, grains, sum_of_squares);
         let mut random = self.streams.stream(u64::from(cell));

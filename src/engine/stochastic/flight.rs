@@ -107,6 +107,10 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         id: u32,
         momentum: &mut WallMomentum<V>,
     ) -> Flight<V> {
+        if !(position.is_finite() && velocity.is_finite()) {
+            // Walls would give it a place again. A velocity that is no number is seen at the end of the step.
+            return Flight { position, velocity: V::from_fn(|_| f64::NAN), left: false };
+        }
         let mut grain = Flight { position, velocity, left: false };
         let mut left = self.duration;
         let mut hits = [false; 3];
@@ -208,12 +212,8 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         grain.velocity[*axis] = wall_speed(wall, end);
     }
 
-    /// Wraps periodic axes, notices open sides, takes rounding off at walls. A place that is no number
-    /// would be mended in silence, so it spoils the velocity, which every step looks at.
+    /// Wraps periodic axes, notices open sides, takes rounding off at walls.
     fn settle_at_the_edges(&self, grain: &mut Flight<V>) {
-        if !grain.position.is_finite() {
-            grain.velocity = V::from_fn(|_| f64::NAN);
-        }
         grain.left = self.is_out(grain.position);
         for axis in 0..V::DIMENSION {
             let (lower, upper) = (self.grid.origin()[axis], self.grid.end()[axis]);
