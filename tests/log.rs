@@ -70,7 +70,7 @@ fn state(count: u32, time: f64) -> SavedState<'static, DVec2> {
     SavedState {
         time,
         compensation: -0.0,
-        columns: grains(count, time),
+        columns: std::borrow::Cow::Owned(grains(count, time)),
         next_id: count,
         engine: EngineState { step: 12, largest_speed: 1.0, collision_rate: -1.0 },
         last_poured: -1.0,

@@ -53,7 +53,7 @@ fn error_after(
     let mut saved = simulation.saved_state(0, 0);
     let row = saved.columns.ids.iter().position(|&other| other == id).unwrap();
     let cell = simulation.gas().grid().cell_of(saved.columns.positions[row]);
-    spoil(&mut saved.columns, row);
+    spoil(saved.columns.to_mut(), row);
     let mut simulation = Simulation::resume(scenario, saved);
     match simulation.advance(&mut NoLaps).unwrap_err() {
         SimulationError::Engine(error) => (error, cell),
