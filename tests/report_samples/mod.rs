@@ -331,15 +331,19 @@ pub(crate) fn pipe() -> Sample {
             }));
         }
     }
+    log.profiles.push(pipe_spectrum(&mut noise));
+    Sample { name: "pipe", log, summary: pipe_summary() }
+}
+
+fn pipe_spectrum(noise: &mut Noise) -> Profile {
     let frequencies: Vec<f64> = (1..400).map(|k| 0.025 * f64::from(k)).collect();
     let power = frequencies.iter().map(|f| 2e-3 * f.powf(-1.6) * (1.0 + 0.3 * noise.gauss()).abs()).collect();
-    log.profiles.push(profile(
+    profile(
         "spectrum",
         200.0,
         vec![column("frequency", Dimension { time: -1, ..PURE }), column("power", TIME)],
         vec![frequencies, power],
-    ));
-    Sample { name: "pipe", log, summary: pipe_summary() }
+    )
 }
 
 fn pipe_summary() -> Map<String, Value> {
