@@ -168,7 +168,7 @@ fn an_old_run_stays_unless_a_new_one_is_complete() {
     assert!(error(&output).contains("run already holds something") && error(&output).contains("--force"));
     assert_eq!(summary(&place.path("run")), old);
     // A failure under --force leaves the old run.
-    let failing = place.quick(&["--out", "run", "--force", "--set", "engine.time_step.fixed=50"]);
+    let failing = place.quick(&["--out", "run", "--force", "--set", "engine.time_step.fixed=15"]);
     assert_eq!(code(&failing), 1);
     assert_eq!(fs::read_dir(place.0.path()).unwrap().count(), 1);
     assert_eq!(summary(&place.path("run")), old);
@@ -279,7 +279,7 @@ fn quiet_is_silent_and_plain_output_has_no_colours() {
 #[test]
 fn a_step_that_is_too_long_ends_the_run_with_one_that_would_do() {
     let place = Place::new();
-    let long = ["--set", "engine.time_step.fixed=50", "--set", "initial.equilibrate=0", "--out", "run"];
+    let long = ["--set", "engine.time_step.fixed=15", "--set", "initial.equilibrate=0", "--out", "run"];
     let output = place.quick(&long);
     assert_eq!((code(&output), text(&output)), (1, String::new()));
     let said = error(&output);
@@ -295,7 +295,7 @@ fn a_step_that_is_too_long_ends_the_run_with_one_that_would_do() {
     let output = place.quick(&short);
     assert_eq!((code(&output), error(&output)), (0, String::new()));
     // Before there is a log nobody is sent to one, and no folder stays behind.
-    let output = place.quick(&["--out", "third", "--set", "engine.time_step.fixed=50"]);
+    let output = place.quick(&["--out", "third", "--set", "engine.time_step.fixed=15"]);
     assert_eq!(code(&output), 1);
     assert!(error(&output).contains("there is no log"), "{}", error(&output));
     assert!(!place.path("third").exists());
