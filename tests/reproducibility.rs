@@ -19,7 +19,7 @@ use grainflow::scenario::initial;
 use grainflow::scenario::model::{AnyScenario, Scenario};
 use grainflow::simulation::{Simulation, assembly};
 use grainflow::space::Vector;
-use small_scenarios::{ENGINES, Small, driven, gas, heap, shear};
+use small_scenarios::{ENGINES, Small, driven, gas, heap, pipe, shaken_box, shear};
 
 /// Runs `$body` with the scenario in its own space.
 macro_rules! in_its_space {
@@ -164,13 +164,12 @@ fn driven_matter_gives_the_same_bits_for_any_threads_and_any_looks() {
     }
 }
 
-/// Steps after which a simulation is saved, and how often it is looked at.
-const SAVED_AT: u64 = 25;
+/// Steps between two looks.
 const LOOKS: u64 = 4;
 
-/// The end, the looks after [`SAVED_AT`], and the figures; without an interruption, or with one at which
-/// the state goes through a log and a new simulation.
-fn with_restart(scenario: &AnyScenario, log: Option<&Path>) -> (End, Vec<Vec<u64>>, String) {
+/// The end, the looks after step `saved_at`, and the figures; without an interruption, or with one at
+/// which the state goes through a log and a new simulation.
+fn with_restart(scenario: &AnyScenario, saved_at: u64, log: Option<&Path>) -> (End, Vec<Vec<u64>>, String) {
     in_its_space!(scenario, scenario => {
         let mut simulation = start(scenario);
         let mut looks = Vec::new();
@@ -179,9 +178,9 @@ fn with_restart(scenario: &AnyScenario, log: Option<&Path>) -> (End, Vec<Vec<u64
             let steps = simulation.totals().steps;
             if steps.is_multiple_of(LOOKS) {
                 let look = look(&mut simulation);
-                looks.extend((steps > SAVED_AT).then_some(look));
+                looks.extend((steps > saved_at).then_some(look));
             }
-            if let Some(log) = log && steps == SAVED_AT {
+            if let Some(log) = log && steps == saved_at {
                 simulation = through_log(&simulation, log);
             }
         }
@@ -213,14 +212,27 @@ fn a_restart_changes_neither_bits_nor_measures() {
             let gases = [true, false].map(|dense| gas(dimension, engine, dense));
             for small in driven(dimension, engine).into_iter().chain(gases) {
                 let scenario = small.with(&[]);
-                let through = with_restart(&scenario, None);
+                let through = with_restart(&scenario, 25, None);
                 let log = place.path().join(&small.name);
-                let restarted = with_threads(3, || with_restart(&scenario, Some(&log)));
+                let restarted = with_threads(3, || with_restart(&scenario, 25, Some(&log)));
                 assert_eq!(restarted.0, through.0, "{}", small.name);
                 assert_eq!(restarted.1, through.1, "{}", small.name);
                 assert_eq!(restarted.2, through.2, "{}", small.name);
             }
         }
+    }
+}
+
+/// Runs of more steps than a measure takes samples: which ones it has taken is part of the state. The step
+/// after the restart is one without a sample.
+#[test]
+fn a_restart_keeps_the_times_of_samples() {
+    let place = tempfile::tempdir().unwrap();
+    for small in [shear(2, "hsmc"), pipe(2, "cba"), pipe(3, "hsmc"), shaken_box(2, "dsmc")] {
+        let scenario = small.with(&["particles.count=150", "run.steps=1000"]);
+        let through = with_restart(&scenario, 500, None);
+        let restarted = with_restart(&scenario, 500, Some(&place.path().join(&small.name)));
+        assert_eq!(restarted, through, "{}", small.name);
     }
 }
 
