@@ -36,13 +36,15 @@ fn main() {
     }
 }
 
+/// A name and what makes one step.
+type Contestant<'a> = (&'a str, Box<dyn FnMut() + 'a>);
+
 /// Times yardstick and engines in turn and prints a line for each.
 fn compare<V: Vector, const D: usize>(threads: usize, grains: usize, collisions: f64) {
     let mut kernel = yardstick::<V, D>(grains, collisions);
     let (sigma, g) = (V::cross_section(1.0), V::contact_correlation(support::cases::VOLUME_FRACTION));
     let engines = ["dsmc", "cba", "hsmc"].map(|engine| (engine, scenario::<V>(engine, grains, collisions)));
-    let mut contestants: Vec<(&str, Box<dyn FnMut() + '_>)> =
-        vec![("yardstick", Box::new(|| kernel.step(sigma, g)))];
+    let mut contestants: Vec<Contestant<'_>> = vec![("yardstick", Box::new(|| kernel.step(sigma, g)))];
     contestants.extend(engines.iter().map(|(name, scenario)| (*name, stepper(scenario))));
     for (_, step) in &mut contestants {
         (0..3).for_each(|_| step());
