@@ -43,7 +43,6 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
         let cells_of_slabs = slabs.iter().map(|slab| slab.start * stride..slab.end * stride);
         let grains = columns.len();
         let mut blocks = cut(cells_of_slabs, self.offsets, columns, cells);
-        parallel::map(grains, blocks.iter_mut().collect(), |block| self.enter_home_cells(block));
         let mut total = Tally::default();
         for colour in colours_in_order(V::DIMENSION, order) {
             let slab_parity = (colour >> (V::DIMENSION - 1)) as usize & 1;
@@ -54,16 +53,6 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
             total.add(&Tally::total(tallies));
         }
         total
-    }
-
-    fn enter_home_cells(&self, block: &mut Block<'_, V>) {
-        if block.ids.is_empty() {
-            return;
-        }
-        for cell in block.cells.clone() {
-            let rows = block.rows(cell, self.offsets);
-            block.targets[rows].fill(cell);
-        }
     }
 
     /// All blocks of one colour in a slab: their cells in the order of their numbers.
@@ -124,6 +113,7 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
     fn cell(&self, home: [u32; 3], block: &mut Block<'_, V>, tally: &mut Tally<V>) {
         let cell = self.grid.cell_at(home);
         let rows = block.rows(cell, self.offsets);
+        block.targets[rows.clone()].fill(cell);
         if rows.len() < 2 {
             return;
         }
