@@ -1,5 +1,6 @@
 //! Engines: what advances a gas.
 
+pub mod event_driven;
 pub mod report;
 pub mod stochastic;
 
@@ -7,10 +8,16 @@ use crate::matter::gas::Gas;
 use crate::space::Vector;
 use report::StepReport;
 
-/// Something that advances a gas by one step.
+/// Something that advances a gas.
 pub trait Engine<V: Vector>: Send {
-    /// One step. `laps` is told which verb of the algorithm begins.
-    fn step(&mut self, gas: &mut Gas<V>, laps: &mut dyn Laps) -> Result<StepReport<V>, EngineError>;
+    /// Advances `gas`: by one step where the engine has steps, which are never shortened; otherwise up to
+    /// `horizon`, or less far where that would take long. `laps` is told which verb of the algorithm begins.
+    fn step(
+        &mut self,
+        gas: &mut Gas<V>,
+        horizon: Horizon,
+        laps: &mut dyn Laps,
+    ) -> Result<StepReport<V>, EngineError>;
 
     /// Everything beside the gas that the next step reads, as numbers to be saved.
     fn state(&self) -> EngineState;
@@ -23,6 +30,27 @@ pub trait Engine<V: Vector>: Send {
 
     /// Grains that make a cell full, for engines with an excluded volume.
     fn capacity(&self, gas: &Gas<V>) -> Option<u32>;
+}
+
+/// Where somebody wants to look at the gas next. An engine without steps of its own stops there; where it stops
+/// has no influence on the bits of its trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon {
+    /// Simulated time [time].
+    pub time: f64,
+    /// Collisions of pairs, counted from the call on.
+    pub collisions: u64,
+}
+
+impl Horizon {
+    /// No place to stop.
+    pub const NONE: Horizon = Horizon { time: f64::INFINITY, collisions: u64::MAX };
+
+    /// The nearer of both, for time and for collisions.
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        Horizon { time: self.time.min(other.time), collisions: self.collisions.min(other.collisions) }
+    }
 }
 
 /// Told of each verb of the algorithm as it begins: a timer in a run, nothing in a test.
@@ -48,6 +76,10 @@ pub struct EngineState {
     pub largest_speed: f64,
     /// Collisions per time of the whole gas that the next step expects [1/time], or −1.
     pub collision_rate: f64,
+    /// What an event-driven engine holds, as numbers in an order of its own; empty for others.
+    pub numbers: Vec<f64>,
+    /// The same, as words.
+    pub words: Vec<u32>,
 }
 
 /// Why a step could not be made.
@@ -83,6 +115,25 @@ pub enum EngineError {
         seed: u64,
         /// When [time].
         time: f64,
+    },
+    /// Grains collide without end in no time.
+    #[error(
+        "inelastic collapse at t = {time}: grain {id} has collided {collisions} times within {span:e} time units \
+         (seed {seed}); set a cure in [engine.event_driven], such as collapse = {{ contact_time = {remedy:e} }}"
+    )]
+    Collapse {
+        /// Identity of a grain that takes part.
+        id: u32,
+        /// Its collisions in the span.
+        collisions: u32,
+        /// The span in which they happened [time].
+        span: f64,
+        /// The seed.
+        seed: u64,
+        /// When [time].
+        time: f64,
+        /// A contact time that would cure it [time].
+        remedy: f64,
     },
     /// Nothing moves and nothing will.
     #[error(

@@ -5,12 +5,67 @@ use crate::space::Vector;
 /// What one step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport<V> {
+    /// Steps made: 1, or 0 for engines without steps.
+    pub steps: u64,
     /// Length of the step [time].
     pub duration: f64,
     /// Whether the cap on the step shortened it.
     pub capped: bool,
     /// What happened in it.
     pub counts: Counts<V>,
+    /// What events there were, where the engine has events.
+    pub events: EventCounts,
+}
+
+/// Bins of the histogram of impact parameters, over 0 ≤ |b|/d ≤ 1.
+pub const IMPACT_BINS: usize = 40;
+
+/// What the events of an event-driven engine were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EventCounts {
+    /// Events of every kind.
+    pub all: u64,
+    /// Hits on walls.
+    pub wall_hits: u64,
+    /// Crossings from cell to cell.
+    pub crossings: u64,
+    /// Renewals of neighbour lists.
+    pub list_renewals: u64,
+    /// Collisions called off because the partner had met another grain before.
+    pub annulled: u64,
+    /// Collisions, of pairs and with walls, that a cure of inelastic collapse has changed.
+    pub cured: u64,
+    /// Collisions of pairs by impact parameter |b|/d, `[bin]`.
+    pub impacts: [u64; IMPACT_BINS],
+}
+
+impl Default for EventCounts {
+    fn default() -> Self {
+        EventCounts {
+            all: 0,
+            wall_hits: 0,
+            crossings: 0,
+            list_renewals: 0,
+            annulled: 0,
+            cured: 0,
+            impacts: [0; IMPACT_BINS],
+        }
+    }
+}
+
+impl EventCounts {
+    /// Adds what `other` counted.
+    pub fn add(&mut self, other: &Self) {
+        self.all += other.all;
+        self.wall_hits += other.wall_hits;
+        self.crossings += other.crossings;
+        self.list_renewals += other.list_renewals;
+        self.annulled += other.annulled;
+        self.cured += other.cured;
+        for (mine, theirs) in self.impacts.iter_mut().zip(&other.impacts) {
+            *mine += theirs;
+        }
+    }
 }
 
 /// Countable and summable things that steps do.
@@ -64,17 +119,20 @@ pub struct Totals<V> {
     pub particle_steps: u64,
     /// Everything that steps count.
     pub counts: Counts<V>,
+    /// The events, where the engine has events.
+    pub events: EventCounts,
 }
 
 impl<V: Vector> Totals<V> {
     /// Adds one step of a gas of `grains` grains.
     pub fn add(&mut self, report: &StepReport<V>, grains: usize) {
-        self.steps += 1;
+        self.steps += report.steps;
         self.steps_capped += u64::from(report.capped);
-        self.particle_steps += grains as u64;
+        self.particle_steps += report.steps * grains as u64;
         if grains > 0 {
             self.collisions_per_particle += 2.0 * report.counts.collisions as f64 / grains as f64;
         }
         self.counts.add(&report.counts);
+        self.events.add(&report.events);
     }
 }

@@ -3,4 +3,5 @@
 pub mod boundary;
 pub mod kinetic_theory;
 pub mod restitution;
+pub mod roughness;
 pub mod source;

@@ -14,8 +14,10 @@ use crate::space::Vector;
 /// Grains in cell order, with the box that they live in and their time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gas<V: Vector> {
-    /// Diameter and mass of every grain.
+    /// Diameter and mass of every grain; of the first species where there are several.
     pub grain: Grain,
+    /// Diameter and mass of each species `[species]`; empty where all grains are alike.
+    pub species: Vec<Grain>,
     /// Simulated time [time].
     pub clock: Clock,
     grid: Grid<V>,
@@ -47,7 +49,7 @@ impl<V: Vector> Gas<V> {
     /// An empty box at time 0.
     pub fn empty(grid: Grid<V>, grain: Grain) -> Self {
         let offsets = vec![0; grid.number_of_cells() + 1];
-        Gas { grain, clock: Clock::default(), grid, columns: Columns::default(), offsets, next_id: 0 }
+        Gas { grain, species: Vec::new(), clock: Clock::default(), grid, columns: Columns::default(), offsets, next_id: 0 }
     }
 
     /// Grains at `positions` with `velocities` `[grain]`, numbered in the given order, at time 0.
@@ -79,6 +81,13 @@ impl<V: Vector> Gas<V> {
     /// Whether there are no grains.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty()
+    }
+    /// Diameter and mass of the grain in `row`.
+    pub fn grain_at(&self, row: usize) -> Grain {
+        match &self.columns.species {
+            Some(species) if !self.species.is_empty() => self.species[species[row] as usize],
+            _ => self.grain,
+        }
     }
     /// Simulated time [time].
     pub fn time(&self) -> f64 {

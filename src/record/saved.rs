@@ -118,6 +118,7 @@ fn sums_of<V: Vector>(part: &State) -> Option<SavedState<'static, V>> {
             step: engine.step,
             largest_speed: engine.largest_speed?,
             collision_rate: engine.collision_rate?,
+            ..EngineState::default()
         },
         totals: totals_of(part.totals.as_ref()?)?,
         last_poured: part.last_poured?,
@@ -183,6 +184,7 @@ fn totals_of<V: Vector>(message: &TotalsMessage) -> Option<Totals<V>> {
             wall_momentum,
             carried_momentum: message.carried_momentum?,
         },
+        ..Totals::default()
     })
 }
 

@@ -8,7 +8,7 @@ pub mod schedule;
 use std::borrow::Cow;
 
 use crate::engine::report::Totals;
-use crate::engine::{Engine, EngineError, Laps};
+use crate::engine::{Engine, EngineError, Horizon, Laps};
 use crate::law::boundary::Boundary;
 use crate::matter::gas::Gas;
 use crate::observe::measure::{Cadence, Measure, Snapshot};
@@ -111,7 +111,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             self.totals.poured += pouring.pour(&mut self.gas, capacity)?;
         }
         let grains = self.gas.len();
-        let report = self.engine.step(&mut self.gas, laps)?;
+        let report = self.engine.step(&mut self.gas, Horizon::NONE, laps)?;
         self.totals.add(&report, grains);
         laps.start("measures");
         self.take_samples();
@@ -208,7 +208,7 @@ fn equilibrate<V: Vector>(
     let mut engine = assembly::engine(scenario, seed, &quiet, V::ZERO, Some(1.0));
     let mut totals = Totals::default();
     while totals.collisions_per_particle < scenario.initial.equilibrate {
-        let report = engine.step(gas, laps)?;
+        let report = engine.step(gas, Horizon::NONE, laps)?;
         totals.add(&report, gas.len());
     }
     rescale(gas, stated_temperature(scenario));

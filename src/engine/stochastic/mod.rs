@@ -19,7 +19,7 @@ mod tally;
 mod time_step;
 
 use crate::engine::report::StepReport;
-use crate::engine::{Engine, EngineError, EngineState, Laps};
+use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
@@ -55,7 +55,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
             time_step,
             excluded_volume: excluded_volume.map(ExcludedVolume::new),
             space: SortSpace::default(),
-            state: EngineState { step: 0, largest_speed: -1.0, collision_rate: -1.0 },
+            state: EngineState { largest_speed: -1.0, collision_rate: -1.0, ..EngineState::default() },
         }
     }
 
@@ -87,7 +87,12 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
 }
 
 impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
-    fn step(&mut self, gas: &mut Gas<V>, laps: &mut dyn Laps) -> Result<StepReport<V>, EngineError> {
+    fn step(
+        &mut self,
+        gas: &mut Gas<V>,
+        _horizon: Horizon,
+        laps: &mut dyn Laps,
+    ) -> Result<StepReport<V>, EngineError> {
         laps.start("time step");
         if self.state.largest_speed < 0.0 {
             let tally = time_step::measure(&self.laws, gas);
@@ -107,7 +112,7 @@ impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
         if !tally.sum_of_squares.is_finite() {
             return Err(self.not_finite(gas));
         }
-        Ok(StepReport { duration, capped, counts: tally.counts })
+        Ok(StepReport { steps: 1, duration, capped, counts: tally.counts, ..StepReport::default() })
     }
 
     fn state(&self) -> EngineState {

@@ -1,0 +1,3 @@
+//! The event-driven engine: exact dynamics of hard grains, one event after another.
+
+pub mod rules;
