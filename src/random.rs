@@ -27,6 +27,8 @@ pub enum Phase {
     InitialVelocities = 8,
     /// The seed of the equilibration that precedes a run.
     Equilibration = 9,
+    /// Turns of relative velocities that prevent inelastic collapse.
+    Rotation = 10,
 }
 
 /// All streams of one seed.

@@ -1,0 +1,144 @@
+//! Lists of neighbours, for dense matter.
+//!
+//! Each grain has an anchor: where it stood when its list was last renewed. As long as it stays within a
+//! box of half-width h around its anchor, it can only meet grains whose boxes come within a contact
+//! distance of its own. Whether two grains are neighbours follows from their anchors alone.
+
+use super::body::{Body, Plan};
+use super::cells::Cells;
+use crate::space::Vector;
+
+/// Places that a new list gets beyond its first neighbours.
+const SPARE_PLACES: u32 = 3;
+
+/// The neighbours of every grain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Lists<V> {
+    /// h [length].
+    half_width: f64,
+    /// `[row]`: where the grain stood when its list was renewed [length].
+    anchors: Vec<V>,
+    /// `[row]`: where its neighbours stand in the pool.
+    spans: Vec<Span>,
+    pool: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Span {
+    first: u32,
+    number: u16,
+    room: u16,
+}
+
+impl<V: Vector> Lists<V> {
+    /// Lists of no grains.
+    pub(super) fn new(half_width: f64) -> Self {
+        Lists { half_width, ..Lists::default() }
+    }
+
+    /// h [length].
+    pub(super) fn half_width(&self) -> f64 {
+        self.half_width
+    }
+
+    /// `[row]` [length].
+    pub(super) fn anchors(&self) -> &[V] {
+        &self.anchors
+    }
+
+    /// Lower and upper corner of the box of the grain in `row` [length].
+    #[inline(always)]
+    pub(super) fn bounds(&self, row: u32) -> (V, V) {
+        let anchor = self.anchors[row as usize];
+        let half = V::from_fn(|_| self.half_width);
+        (anchor - half, anchor + half)
+    }
+
+    /// The neighbours of the grain in `row`.
+    #[inline(always)]
+    pub(super) fn of(&self, row: u32) -> &[u32] {
+        let span = self.spans[row as usize];
+        &self.pool[span.first as usize..span.first as usize + span.number as usize]
+    }
+
+    /// Forgets all lists and pools and sets the anchors `[row]`.
+    pub(super) fn reset(&mut self, anchors: Vec<V>) {
+        self.spans.clear();
+        self.spans.resize(anchors.len(), Span::default());
+        self.anchors = anchors;
+        self.pool.clear();
+    }
+
+    /// Makes room for one more grain, which has no neighbours yet.
+    pub(super) fn append(&mut self, anchor: V) {
+        self.anchors.push(anchor);
+        self.spans.push(Span::default());
+    }
+
+    /// Finds the neighbours of the grain in `row` among the chains of `cells`, which hold anchors, and
+    /// enters it into their lists. `distance` gives the contact distance of a pair [length].
+    pub(super) fn find(
+        &mut self,
+        row: u32,
+        cells: &Cells<V>,
+        bodies: &[Body<V>],
+        plans: &[Plan],
+        distance: impl Fn(u32, u32) -> f64,
+    ) {
+        let anchor = self.anchors[row as usize];
+        let reach = 2.0 * self.half_width;
+        cells.around(plans[row as usize].cell, None).for_each(|cell, shift: V| {
+            let mut other = cells.first(cell);
+            while other != super::body::NONE {
+                let apart = self.anchors[other as usize] + shift - anchor;
+                let gap = V::from_fn(|axis| (apart[axis].abs() - reach).max(0.0));
+                let contact = distance(row, other);
+                if other != row && gap.length_squared() <= contact * contact && !self.of(row).contains(&other) {
+                    self.enter(row, other);
+                    self.enter(other, row);
+                }
+                other = bodies[other as usize].next;
+            }
+        });
+    }
+
+    /// Takes the grain in `row` out of all lists.
+    pub(super) fn withdraw(&mut self, row: u32) {
+        let span = std::mem::take(&mut self.spans[row as usize].number);
+        let first = self.spans[row as usize].first as usize;
+        for place in first..first + span as usize {
+            let other = self.pool[place];
+            let theirs = &mut self.spans[other as usize];
+            let begin = theirs.first as usize;
+            let list = &mut self.pool[begin..begin + theirs.number as usize];
+            let at = list.iter().position(|&entry| entry == row).expect("neighbours know each other");
+            list[at] = list[list.len() - 1];
+            theirs.number -= 1;
+        }
+    }
+
+    /// Puts the anchor of the grain in `row`, which is in no list, at `anchor`.
+    pub(super) fn anchor(&mut self, row: u32, anchor: V) {
+        self.anchors[row as usize] = anchor;
+    }
+
+    fn enter(&mut self, row: u32, neighbour: u32) {
+        let span = &mut self.spans[row as usize];
+        if span.number == span.room {
+            // The list moves to the end of the pool; what it leaves is won back when all lists are made anew.
+            let room = (span.room + span.room / 2).max(span.number + SPARE_PLACES as u16);
+            let first = self.pool.len() as u32;
+            let old = span.first as usize..span.first as usize + span.number as usize;
+            self.pool.extend_from_within(old);
+            self.pool.resize(first as usize + room as usize, 0);
+            (span.first, span.room) = (first, room);
+        }
+        self.pool[span.first as usize + span.number as usize] = neighbour;
+        span.number += 1;
+    }
+
+    /// Entries of the pool that no list uses.
+    pub(super) fn waste(&self) -> usize {
+        self.pool.len() - self.spans.iter().map(|span| span.room as usize).sum::<usize>()
+    }
+}

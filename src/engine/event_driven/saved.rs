@@ -1,0 +1,197 @@
+//! The state as numbers and words, to be saved and taken up again bit for bit.
+
+use super::body::{Body, Contact, Event, Face, NONE, Plan};
+use super::calendar::Entry;
+use super::cells::Cells;
+use super::laws::Laws;
+use super::lists::Lists;
+use super::rules::Structure;
+use super::world::World;
+use super::year::Pace;
+use crate::engine::EngineState;
+use crate::matter::clock::Clock;
+use crate::space::Vector;
+
+/// Numbers and words that are read in the order in which they were written.
+struct Tape<'a> {
+    numbers: std::slice::Iter<'a, f64>,
+    words: std::slice::Iter<'a, u32>,
+}
+
+impl Tape<'_> {
+    fn number(&mut self) -> Option<f64> {
+        self.numbers.next().copied()
+    }
+    fn word(&mut self) -> Option<u32> {
+        self.words.next().copied()
+    }
+    fn long(&mut self) -> Option<u64> {
+        Some(u64::from(self.word()?) | u64::from(self.word()?) << 32)
+    }
+    fn vector<V: Vector>(&mut self) -> Option<V> {
+        let mut vector = V::ZERO;
+        for axis in 0..V::DIMENSION {
+            vector[axis] = self.number()?;
+        }
+        Some(vector)
+    }
+}
+
+impl<V: Vector> World<V> {
+    /// Everything that the next event depends on.
+    pub(super) fn state(&self) -> EngineState {
+        let mut numbers = vec![
+            self.origin.time(),
+            self.origin.compensation(),
+            self.now,
+            self.scale,
+            self.calendar.year(),
+            self.pace.rate,
+            self.pace.planned,
+            self.pace.shortest_span,
+            self.lists.as_ref().map_or(-1.0, Lists::half_width),
+        ];
+        let mut words = vec![self.bodies.len() as u32, self.next_id];
+        words.extend(self.cells.counts());
+        let pace = &self.pace;
+        for count in [
+            pace.events,
+            pace.collisions,
+            pace.crossings,
+            pace.crossings_since_order,
+            pace.arranged_for,
+            pace.gone,
+        ] {
+            words.extend([count as u32, (count >> 32) as u32]);
+        }
+        for row in 0..self.bodies.len() {
+            self.write_grain(row, &mut numbers, &mut words);
+        }
+        EngineState { numbers, words, ..EngineState::default() }
+    }
+
+    fn write_grain(&self, row: usize, numbers: &mut Vec<f64>, words: &mut Vec<u32>) {
+        let (body, plan) = (&self.bodies[row], &self.plans[row]);
+        for vector in [body.position, body.velocity] {
+            numbers.extend((0..V::DIMENSION).map(|axis| vector[axis]));
+        }
+        numbers.extend([body.time, plan.time, plan.contact.time]);
+        words.extend([self.ids[row], body.collisions, plan.cell, code(plan.event)]);
+        words.extend([plan.contact.partner, plan.contact.collisions]);
+        if let Some(spins) = &self.spins {
+            numbers.extend(spins[row].as_ref());
+        }
+        if let Some(last) = &self.last_collisions {
+            numbers.push(last[row]);
+        }
+        if let Some(lists) = &self.lists {
+            numbers.extend((0..V::DIMENSION).map(|axis| lists.anchors()[row][axis]));
+        }
+        if let Some(species) = &self.species {
+            words.push(u32::from(species[row]));
+        }
+    }
+
+    /// Takes up what [`World::state`] gave, under the same laws; `None` where it does not fit them.
+    pub(super) fn restored(laws: &Laws<V>, structure: Structure, state: &EngineState) -> Option<Self> {
+        let mut tape = Tape { numbers: state.numbers.iter(), words: state.words.iter() };
+        let mut world = World::empty(laws, structure);
+        world.origin = Clock::restored(tape.number()?, tape.number()?);
+        (world.now, world.scale) = (tape.number()?, tape.number()?);
+        let year = tape.number()?;
+        world.pace = Pace {
+            rate: tape.number()?,
+            planned: tape.number()?,
+            shortest_span: tape.number()?,
+            ..Pace::default()
+        };
+        let half_width = tape.number()?;
+        let grains = tape.word()?;
+        world.next_id = tape.word()?;
+        let counts = [tape.word()?, tape.word()?, tape.word()?];
+        let periodic = [0, 1, 2].map(|axis| axis < V::DIMENSION && laws.boundary.is_periodic(axis));
+        world.cells = Cells::with_counts(laws.size, counts, periodic);
+        world.pace.events = tape.long()?;
+        world.pace.collisions = tape.long()?;
+        world.pace.crossings = tape.long()?;
+        world.pace.crossings_since_order = tape.long()?;
+        world.pace.arranged_for = tape.long()?;
+        world.pace.gone = tape.long()?;
+        world.spins = laws.roughness.map(|_| Vec::new());
+        world.species = (!laws.species.is_empty()).then(Vec::new);
+        world.last_collisions = laws.cure.contact_time.map(|_| Vec::new());
+        let mut anchors = (half_width >= 0.0).then(Vec::new);
+        for _ in 0..grains {
+            world.read_grain(&mut tape, &mut anchors)?;
+        }
+        world.lists = anchors.map(|anchors| {
+            let mut lists = Lists::new(half_width);
+            lists.reset(anchors);
+            lists
+        });
+        world.walls.set_origin(world.origin);
+        world.link();
+        world.calendar.begin(year, world.pace.planned);
+        for (row, plan) in world.plans.iter().enumerate() {
+            world.calendar.write(Entry { time: plan.time, id: world.ids[row], row: row as u32 });
+        }
+        Some(world)
+    }
+
+    fn read_grain(&mut self, tape: &mut Tape<'_>, anchors: &mut Option<Vec<V>>) -> Option<()> {
+        let (position, velocity) = (tape.vector()?, tape.vector()?);
+        let (time, plan_time, contact_time) = (tape.number()?, tape.number()?, tape.number()?);
+        self.ids.push(tape.word()?);
+        self.bodies.push(Body { position, velocity, time, collisions: tape.word()?, next: NONE });
+        let cell = tape.word()?;
+        let event = event(tape.word()?)?;
+        let contact = Contact { time: contact_time, partner: tape.word()?, collisions: tape.word()? };
+        self.plans.push(Plan { time: plan_time, contact, cell, event });
+        if let Some(spins) = &mut self.spins {
+            let mut spin = V::Spin::default();
+            for component in spin.as_mut() {
+                *component = tape.number()?;
+            }
+            spins.push(spin);
+        }
+        if let Some(last) = &mut self.last_collisions {
+            last.push(tape.number()?);
+        }
+        if let Some(anchors) = anchors {
+            anchors.push(tape.vector()?);
+        }
+        if let Some(species) = &mut self.species {
+            species.push(tape.word()? as u8);
+        }
+        Some(())
+    }
+}
+
+/// An event as a word.
+fn code(event: Event) -> u32 {
+    let side = |face: Face| u32::from(face.axis) << 1 | u32::from(face.upper);
+    match event {
+        Event::Rest => 0,
+        Event::Gone => 1,
+        Event::Collision => 2,
+        Event::Exit => 3,
+        Event::Outlook => 4,
+        Event::Crossing(face) => 8 | side(face),
+        Event::Wall(face) => 16 | side(face),
+    }
+}
+
+/// The event of a word; `None` for none.
+fn event(code: u32) -> Option<Event> {
+    let face = Face { axis: (code >> 1 & 3) as u8, upper: code & 1 == 1 };
+    match code {
+        0 => Some(Event::Rest),
+        1 => Some(Event::Gone),
+        2 => Some(Event::Collision),
+        3 => Some(Event::Exit),
+        4 => Some(Event::Outlook),
+        8..16 => Some(Event::Crossing(face)),
+        16..24 => Some(Event::Wall(face)),
+        _ => None,
+    }
+}
