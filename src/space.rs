@@ -69,7 +69,29 @@ pub trait Vector:
     /// The displaced collision carries m|v′|·c d, Enskog theory asks for (1 + r)/2 m|vₙ|d; both are
     /// averaged over impact parameters: c = (1 + r)/2 ⟨√(1 − b²)⟩ / ⟨√(r²(1 − b²) + b²)⟩.
     fn displacement_ratio(restitution: f64) -> f64;
+    /// Velocity ω × r of the point at `arm` r from the centre of a body of angular velocity `spin` ω.
+    fn spin_velocity(spin: Self::Spin, arm: Self) -> Self;
+    /// Angular momentum r × P [mass·length²/time] that an `impulse` P brings when it acts at `arm` r
+    /// from the centre.
+    fn torque(arm: Self, impulse: Self) -> Self::Spin;
+    /// A vector of the same length across this one: the one to its left in 2D, in a direction
+    /// uniform on the circle in 3D.
+    fn across(self, random: &mut Stream) -> Self;
 
+    /// `spin` + `factor` · `change`.
+    #[inline]
+    fn add_spin(mut spin: Self::Spin, change: Self::Spin, factor: f64) -> Self::Spin {
+        spin.as_mut().iter_mut().zip(change.as_ref()).for_each(|(sum, part)| *sum += factor * part);
+        spin
+    }
+    /// The vector turned by a random angle, uniform in [−max, max], and by the opposite angle:
+    /// v cos θ ± v⊥ sin θ with v⊥ from [`Vector::across`]. In 3D the axis is a random one across the vector,
+    /// so that the angle itself is uniform in [0, max]. `largest_angle` in radian.
+    fn turns(self, largest_angle: f64, random: &mut Stream) -> [Self; 2] {
+        let (sine, cosine) = libm::sincos(largest_angle * random.symmetric());
+        let (along, across) = (self * cosine, self.across(random) * sine);
+        [along + across, along - across]
+    }
     /// Squared length.
     fn length_squared(self) -> f64 {
         self.dot(self)
@@ -155,6 +177,17 @@ impl Vector for DVec2 {
             .sum();
         0.5 * (1.0 + r) * std::f64::consts::FRAC_PI_4 / (sum * width / 3.0)
     }
+    #[inline(always)]
+    fn spin_velocity(spin: [f64; 1], arm: Self) -> Self {
+        DVec2::new(-arm.y, arm.x) * spin[0]
+    }
+    #[inline(always)]
+    fn torque(arm: Self, impulse: Self) -> [f64; 1] {
+        [arm.x * impulse.y - arm.y * impulse.x]
+    }
+    fn across(self, _random: &mut Stream) -> Self {
+        DVec2::new(-self.y, self.x)
+    }
 }
 
 impl Vector for DVec3 {
@@ -196,6 +229,29 @@ impl Vector for DVec3 {
     fn displacement_ratio(restitution: f64) -> f64 {
         let r = restitution;
         (1.0 + r) * (1.0 + r) / (2.0 * (1.0 + r + r * r))
+    }
+    #[inline(always)]
+    fn spin_velocity(spin: [f64; 3], arm: Self) -> Self {
+        DVec3::from_array(spin).cross(arm)
+    }
+    #[inline(always)]
+    fn torque(arm: Self, impulse: Self) -> [f64; 3] {
+        arm.cross(impulse).to_array()
+    }
+    fn across(self, random: &mut Stream) -> Self {
+        let length = self.length();
+        if length == 0.0 {
+            return self;
+        }
+        let (p, q, square) = loop {
+            let point = random.in_disc();
+            // A point too near to the centre has no direction.
+            if point.2 > 1e-12 {
+                break point;
+            }
+        };
+        let (first, second) = tangents(self * (1.0 / length));
+        (first * p + second * q) * (length / square.sqrt())
     }
 }
 
@@ -310,6 +366,64 @@ mod tests {
             assert!((DVec2::displacement_ratio(r) - half * normal2 / after2).abs() < 1e-4);
             assert!((DVec3::displacement_ratio(r) - half * normal3 / after3).abs() < 1e-4);
         }
+    }
+
+    #[test]
+    fn spins_move_points_and_impulses_spin() {
+        // A wheel that turns to the left: its rightmost point goes up, a push up there turns it on.
+        assert_eq!(DVec2::spin_velocity([2.0], DVec2::new(3.0, 1.0)), DVec2::new(-2.0, 6.0));
+        assert_eq!(DVec2::torque(DVec2::new(3.0, 1.0), DVec2::new(-1.0, 5.0)), [16.0]);
+        let (spin, arm) = ([1.0, -2.0, 3.0], DVec3::new(4.0, 5.0, -6.0));
+        assert_eq!(DVec3::spin_velocity(spin, arm), DVec3::new(-3.0, 18.0, 13.0));
+        assert_eq!(DVec3::torque(DVec3::from_array(spin), arm), [-3.0, 18.0, 13.0]);
+        assert_eq!(DVec3::add_spin(spin, [1.0, 1.0, 2.0], -0.5), [0.5, -2.5, 2.0]);
+    }
+
+    /// Turned vectors keep their length; the sine of the angle has the moments of a uniform angle.
+    fn turning<V: Vector>(vector: V) {
+        let (mut random, draws, largest) = (stream(), 100_000, 0.7);
+        let (mut first, mut second) = (0.0, 0.0);
+        for _ in 0..draws {
+            let [turned, back] = vector.turns(largest, &mut random);
+            for v in [turned, back] {
+                assert!((v.length_squared() / vector.length_squared() - 1.0).abs() < 4e-15);
+            }
+            assert!(
+                ((turned + back) - vector * (turned.dot(vector) * 2.0 / vector.length_squared())).length()
+                    < 1e-13
+            );
+            let angle = libm::acos((turned.dot(vector) / vector.length_squared()).min(1.0));
+            assert!(angle <= largest + 1e-12);
+            first += angle;
+            second += angle * angle;
+        }
+        assert!(agrees(first, draws, largest / 2.0, largest * largest / 3.0));
+        assert!(agrees(second, draws, largest * largest / 3.0, largest.powi(4) / 5.0));
+        assert_eq!(V::ZERO.turns(largest, &mut random), [V::ZERO; 2]);
+    }
+
+    #[test]
+    fn a_turn_is_uniform_in_its_angle() {
+        turning(DVec2::new(3.0, -1.0));
+        turning(DVec3::new(3.0, -1.0, 0.5));
+        turning(DVec3::NEG_Z * 1e-9);
+    }
+
+    #[test]
+    fn a_turn_prefers_no_side() {
+        let (mut random, draws) = (stream(), 100_000);
+        let (mut left, mut up, mut aslant) = (0.0, 0.0, 0.0);
+        for _ in 0..draws {
+            left += DVec2::X.turns(0.5, &mut random)[0].y;
+            let turned = DVec3::Z.turns(0.5, &mut random)[0];
+            let length = turned.truncate().length();
+            up += (turned.x / length).powi(2);
+            aslant += turned.x * turned.y / (length * length);
+        }
+        // ⟨sin²θ⟩ = 1/2 − sin(2·0.5)/(4·0.5); on the circle ⟨cos²⟩ = 1/2, ⟨cos⁴⟩ = 3/8, ⟨cos² sin²⟩ = 1/8.
+        assert!(agrees(left, draws, 0.0, 0.5 - libm::sin(1.0) / 2.0));
+        assert!(agrees(up, draws, 0.5, 0.375));
+        assert!(agrees(aslant, draws, 0.0, 0.125));
     }
 
     #[test]

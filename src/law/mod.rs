@@ -2,6 +2,7 @@
 
 pub mod boundary;
 pub mod kinetic_theory;
+pub mod pair_collision;
 pub mod restitution;
 pub mod roughness;
 pub mod source;

@@ -10,7 +10,7 @@ mod body;
 mod calendar;
 mod cells;
 mod collapse;
-mod contact;
+pub mod contact;
 mod events;
 pub mod laws;
 mod lists;

@@ -1,7 +1,7 @@
 //! The sides of the box as the dynamics sees them.
 
 use super::body::Face;
-use super::contact::{plane_contact, vibrating_contact};
+use super::contact::{FlightOverVibration, plane_contact, vibrating_contact};
 use super::laws::Laws;
 use crate::law::boundary::{Face as Side, Wall, WallKind};
 use crate::matter::clock::Clock;
@@ -121,7 +121,15 @@ impl<V: Vector> Walls<V> {
                 // Seen from above, the motion of an upper wall is upside down.
                 let half_turn = if face.upper { std::f64::consts::PI } else { 0.0 };
                 let angle = self.angle(face, frequency, now) + half_turn;
-                match vibrating_contact(height, velocity, acceleration, amplitude, omega, angle, outlook) {
+                let flight = FlightOverVibration {
+                    height,
+                    velocity,
+                    acceleration,
+                    amplitude,
+                    angular_frequency: omega,
+                    phase: angle,
+                };
+                match vibrating_contact(&flight, outlook) {
                     Some(time) => Meeting::Hit(time),
                     None if outlook < until => Meeting::Unknown(outlook),
                     None => Meeting::Never,
