@@ -5,8 +5,9 @@ use crate::space::Vector;
 /// No grain, no cell.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A grain as it was after its last event. In 3D it fills one line of the cache.
+/// A grain as it was after its last event: one line of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
 pub(super) struct Body<V> {
     /// Position at `time` [length].
     pub(super) position: V,
@@ -125,7 +126,7 @@ mod tests {
     #[test]
     fn what_is_read_most_is_small() {
         assert_eq!(size_of::<Body<DVec3>>(), 64);
-        assert_eq!(size_of::<Body<DVec2>>(), 48);
+        assert_eq!(size_of::<Body<DVec2>>(), 64);
         assert_eq!(size_of::<Plan>(), 32);
     }
 

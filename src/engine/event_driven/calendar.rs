@@ -114,6 +114,12 @@ impl Calendar {
         }
     }
 
+    /// An event that lies `ahead` places behind the next one, as far as is known.
+    #[inline(always)]
+    pub(super) fn upcoming(&self, ahead: usize) -> Option<Entry> {
+        self.open.len().checked_sub(ahead + 1).map(|place| self.open[place])
+    }
+
     /// Takes the next event that is still planned; `None` when the year is over.
     #[inline]
     pub(super) fn next(&mut self, plans: &[Plan]) -> Option<Entry> {

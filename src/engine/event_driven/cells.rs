@@ -1,11 +1,12 @@
 //! Cells in which the grains that may meet are found.
 
 use super::body::{Body, Face, NONE, Plan};
+use super::fetch::fetch;
 use crate::law::boundary::Boundary;
 use crate::space::Vector;
 
 /// Slack of a cell against the largest contact distance: rounding must not hide a contact.
-const SLACK: f64 = 1.0 + 1e-9;
+pub(super) const SLACK: f64 = 1.0 + 1e-9;
 
 /// A box cut into cells, each with a chain of its grains.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,6 +19,17 @@ pub(super) struct Cells<V> {
     periodic: [bool; 3],
     /// `[cell]`: its first grain, or [`NONE`].
     heads: Vec<u32>,
+    /// Cells around one that is not at the edge of the box, as differences of cell numbers: on every side
+    /// with itself, and on each of its six sides alone.
+    inside: Layers,
+}
+
+/// Differences of cell numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Layers {
+    all: Vec<u32>,
+    /// `[axis][side]`.
+    sides: [[Vec<u32>; 2]; 3],
 }
 
 /// Cells next to a cell along one axis, itself among them.
@@ -50,14 +62,16 @@ impl<V: Vector> Cells<V> {
     /// Empty cells, `counts` along each axis.
     pub(super) fn with_counts(size: V, counts: [u32; 3], periodic: [bool; 3]) -> Self {
         let total: usize = counts.iter().map(|&count| count as usize).product();
+        let strides = [1, counts[0], counts[0] * counts[1]];
         Cells {
             size,
             side: V::from_fn(|axis| size[axis] / f64::from(counts[axis])),
             inverse_side: V::from_fn(|axis| f64::from(counts[axis]) / size[axis]),
             counts,
-            strides: [1, counts[0], counts[0] * counts[1]],
+            strides,
             periodic,
             heads: vec![NONE; total],
+            inside: Layers::new(V::DIMENSION, strides),
         }
     }
 
@@ -104,6 +118,42 @@ impl<V: Vector> Cells<V> {
             k => f64::from(k) * self.side[axis],
         });
         (low, high)
+    }
+
+    /// The first grains of the cells around `cell`, or of those on the side `only` of it, and how many
+    /// there are; `None` for a cell at the edge of the box.
+    #[inline]
+    pub(super) fn firsts_around(&self, cell: u32, only: Option<Face>) -> Option<([u32; 27], usize)> {
+        let at = self.coordinates(cell);
+        if (0..V::DIMENSION).any(|axis| at[axis] == 0 || at[axis] + 1 == self.counts[axis]) {
+            return None;
+        }
+        let layer = match only {
+            None => &self.inside.all,
+            Some(face) => &self.inside.sides[face.axis()][face.side()],
+        };
+        let (mut firsts, mut number) = ([0; 27], 0);
+        for &step in layer {
+            let first = self.heads[cell.wrapping_add(step) as usize];
+            firsts[number] = first;
+            number += usize::from(first != NONE);
+        }
+        Some((firsts, number))
+    }
+
+    /// Sends for the memory of the cells around `cell`.
+    #[inline]
+    pub(super) fn send_for(&self, cell: u32) {
+        let rows = if V::DIMENSION == 3 { 3 } else { 1 };
+        for layer in 0..rows {
+            for line in 0..3 {
+                let step = (line * self.strides[1]).wrapping_sub(self.strides[1])
+                    .wrapping_add(if rows == 3 { (layer * self.strides[2]).wrapping_sub(self.strides[2]) } else { 0 });
+                if let Some(head) = self.heads.get(cell.wrapping_add(step) as usize) {
+                    fetch(head);
+                }
+            }
+        }
     }
 
     /// The cells around `cell`, itself among them; with `only`, those that lie on that side of it.
@@ -185,6 +235,29 @@ impl<V: Vector> Cells<V> {
             before = bodies[before].next as usize;
         }
         bodies[before].next = after;
+    }
+}
+
+impl Layers {
+    fn new(dimension: usize, strides: [u32; 3]) -> Self {
+        let steps = |axis: usize| if axis < dimension { -1..=1 } else { 0..=0 };
+        let mut layers = Layers::default();
+        for z in steps(2) {
+            for (y, x) in steps(1).flat_map(|y| steps(0).map(move |x| (y, x))) {
+                let at: [i32; 3] = [x, y, z];
+                let step = |axis: usize| (at[axis] as u32).wrapping_mul(strides[axis]);
+                let sum = step(0).wrapping_add(step(1)).wrapping_add(step(2));
+                layers.all.push(sum);
+                for axis in 0..dimension {
+                    match at[axis] {
+                        -1 => layers.sides[axis][0].push(sum),
+                        1 => layers.sides[axis][1].push(sum),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        layers
     }
 }
 

@@ -12,6 +12,7 @@ mod cells;
 mod collapse;
 pub mod contact;
 mod events;
+mod fetch;
 pub mod laws;
 mod lists;
 mod order;
@@ -71,6 +72,7 @@ impl<V: Vector> World<V> {
                 self.calendar.write(next);
                 return Ok(true);
             }
+            self.send_ahead();
             self.now = next.time;
             self.happen(next.row)?;
             if self.year_is_overfull() {
@@ -134,5 +136,13 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
 
     fn capacity(&self, _gas: &Gas<V>) -> Option<u32> {
         None
+    }
+}
+
+impl<V: Vector> EventDriven<V> {
+    /// TEMP
+    pub fn describe(&self) -> String {
+        let w = self.world.as_ref().unwrap();
+        format!("{:?} year {:.3} lists {} cells {:?}", w.calendar.usage(), w.calendar.year(), w.lists.is_some(), w.cells.counts())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::body::{Body, Contact, Event, Face, NONE, Plan};
 use super::contact::{leave_interval, pair_contact};
+use super::fetch::fetch;
 use super::walls::{Fall, Meeting};
 use super::world::World;
 use crate::space::Vector;
@@ -28,7 +29,22 @@ impl<V: Vector> World<V> {
         let mut best = so_far;
         let body = &self.bodies[row as usize];
         let scale = self.scale_now();
-        self.cells.around(self.plans[row as usize].cell, only).for_each(|cell, shift: V| {
+        let cell = self.plans[row as usize].cell;
+        if let Some((firsts, number)) = self.cells.firsts_around(cell, only) {
+            // All grains are sent for before the first is looked at.
+            firsts[..number].iter().for_each(|&first| fetch(&self.bodies[first as usize]));
+            for &first in &firsts[..number] {
+                let mut other = first;
+                while other != NONE {
+                    let partner = &self.bodies[other as usize];
+                    let (place, dv) = self.relative::<FALLS>(body, partner);
+                    self.consider(row, other, place - body.position, dv, scale, &mut best);
+                    other = partner.next;
+                }
+            }
+            return best;
+        }
+        self.cells.around(cell, only).for_each(|cell, shift: V| {
             let image = body.position - shift;
             let mut other = self.cells.first(cell);
             while other != NONE {
@@ -45,11 +61,40 @@ impl<V: Vector> World<V> {
         let mut best = Contact::NONE;
         let body = &self.bodies[row as usize];
         let scale = self.scale_now();
+        list.iter().for_each(|&other| fetch(&self.bodies[other as usize]));
         for &other in list {
             let (place, dv) = self.relative::<FALLS>(body, &self.bodies[other as usize]);
             self.consider(row, other, self.nearest_image(place - body.position), dv, scale, &mut best);
         }
         best
+    }
+
+    /// Sends for the memory of the events that come next, the nearer the more of it.
+    #[inline]
+    pub(super) fn send_ahead(&self) {
+        if let Some(entry) = self.calendar.upcoming(5) {
+            fetch(&self.bodies[entry.row as usize]);
+            fetch(&self.plans[entry.row as usize]);
+        }
+        let Some(entry) = self.calendar.upcoming(2) else { return };
+        let plan = &self.plans[entry.row as usize];
+        if let Some(partner) = self.bodies.get(plan.contact.partner as usize) {
+            fetch(partner);
+        }
+        if self.lists.is_none() {
+            self.cells.send_for(plan.cell);
+        }
+        let Some(entry) = self.calendar.upcoming(0) else { return };
+        let plan = &self.plans[entry.row as usize];
+        match &self.lists {
+            Some(lists) => lists.of(entry.row).iter().for_each(|&other| fetch(&self.bodies[other as usize])),
+            None if plan.cell != NONE => {
+                if let Some((firsts, number)) = self.cells.firsts_around(plan.cell, None) {
+                    firsts[..number].iter().for_each(|&first| fetch(&self.bodies[first as usize]));
+                }
+            }
+            None => {}
+        }
     }
 
     /// Where `partner` is now, and its velocity relative to `body`.

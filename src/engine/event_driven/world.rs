@@ -2,7 +2,7 @@
 
 use super::body::{Body, NONE, Plan};
 use super::calendar::{Calendar, Entry};
-use super::cells::Cells;
+use super::cells::{Cells, SLACK};
 use super::collapse::CollapseWatch;
 use super::laws::Laws;
 use super::lists::Lists;
@@ -203,8 +203,8 @@ impl<V: Vector> World<V> {
     /// Enters the grain in `row`, which is in no list, into the lists around its anchor.
     pub(super) fn find_neighbours(&mut self, row: u32) {
         let Some(mut lists) = self.lists.take() else { return };
-        let widest = self.widest_scale();
-        let distance = |one, other| self.contact_distance(one, other) * widest;
+        // Growing grains are smaller than the laws have them; rounding must not hide a contact.
+        let distance = |one, other| self.contact_distance(one, other) * SLACK;
         lists.find(row, &self.cells, &self.bodies, &self.plans, distance);
         self.lists = Some(lists);
     }

@@ -5,7 +5,7 @@
 //! the pages that suit the events of the last one. Also the order in memory and the choice between cells
 //! and lists are looked at. All this follows from the state and from counts alone.
 
-use super::body::{Event, NONE};
+use super::body::NONE;
 use super::calendar::Entry;
 use super::world::World;
 use crate::space::Vector;
