@@ -217,7 +217,8 @@ fn random_flights_meet_the_wall_where_a_scan_finds_it() {
             velocity: random.gaussian() * [1.0, 0.1, 0.001][(k / 16) % 3],
             height: amplitude + random.uniform() * [1.0, 1e-3, -amplitude][(k / 48) % 3],
         };
-        met += usize::from(agrees_with_scan(&flight, 2.0));
+        let period = std::f64::consts::TAU / flight.angular_frequency;
+        met += usize::from(agrees_with_scan(&flight, f64::min(2.0, 20.0 * period)));
     }
     assert!((1000..4000).contains(&met), "{met}");
 }
