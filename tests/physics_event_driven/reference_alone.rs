@@ -72,8 +72,8 @@ fn unequal_grains_meet_aslant() {
     assert_hits(&pair.pair_hits, &[(5.0 - 1.2, 0, 1)]);
     // v_n = 0.8 k; grain 1 loses 2 · 1/4 of it, grain 2 gets 2 · 3/4.
     let expected = [[1.0 - 0.32, -0.24], [0.96, 0.72]];
-    for k in 0..2 {
-        assert!((0..2).all(|axis| (pair.velocities[k][axis] - expected[k][axis]).abs() < 1e-12));
+    for (v, expected) in pair.velocities.iter().zip(expected) {
+        assert!((0..2).all(|axis| (v[axis] - expected[axis]).abs() < 1e-12));
     }
 }
 
@@ -103,9 +103,7 @@ fn a_gas_never_overlaps_and_keeps_its_momentum() {
         assert!(gas.smallest_gap() > -1e-12 && gas.energy() < energy, "{count}");
         energy = gas.energy();
     }
-    for axis in 0..3 {
-        assert!((gas.momentum(axis) - before[axis]).abs() < 1e-12);
-    }
+    assert!((0..3).all(|axis| (gas.momentum(axis) - before[axis]).abs() < 1e-12));
 }
 
 fn floor(restitution: f64, amplitude: f64, angular_frequency: f64) -> SmoothWall {
