@@ -150,3 +150,7 @@ pub fn vibrating_contact(flight: &FlightOverVibration, until: f64) -> Option<f64
     }
     None
 }
+
+#[cfg(test)]
+#[path = "contact_tests.rs"]
+mod tests;

@@ -1,6 +1,7 @@
 //! What happens at an event (Miller 2004, section 2.4).
 
 use super::body::{Contact, Event, Face, Plan};
+use super::collapse::{cured_restitution, turn_relative_velocity};
 use super::world::World;
 use crate::engine::EngineError;
 use crate::engine::report::IMPACT_BINS;
@@ -48,9 +49,9 @@ impl<V: Vector> World<V> {
         let speed = meeting.normal_speed();
         let waits = [row, partner].map(|row| self.time_since_collision(row));
         let nominal = restitution_at(self.laws.restitution, speed);
-        let (restitution, mut cured) = self.laws.cure.restitution(nominal, speed, waits);
+        let (restitution, mut cured) = cured_restitution(&self.laws.cure, nominal, speed, waits);
         let pair = PairOfGrains::of(self.grain(row), self.grain(partner));
-        let transferred = match (self.laws.roughness, &mut self.spins) {
+        let mut transferred = match (self.laws.roughness, &mut self.spins) {
             (Some(roughness), Some(all)) => {
                 let mut spins = [all[row as usize], all[partner as usize]];
                 let transferred = meeting.collide_rough(&pair, roughness, restitution, velocities, &mut spins);
@@ -59,9 +60,10 @@ impl<V: Vector> World<V> {
             }
             _ => meeting.collide_smooth(&pair, restitution, velocities),
         };
-        if restitution < 1.0 && self.laws.cure.rotation.is_some() {
+        if let Some(largest) = self.laws.cure.rotation.filter(|_| restitution < 1.0) {
             let mut random = self.stream(row, Phase::Rotation);
-            self.laws.cure.turn(&pair, meeting.separation, velocities, &mut random);
+            transferred +=
+                turn_relative_velocity(largest, &pair, meeting.separation, velocities, &mut random);
             cured = true;
         }
         let distance = meeting.distance_squared.sqrt();
@@ -155,38 +157,45 @@ impl<V: Vector> World<V> {
         self.advance(row);
         let wall = self.walls.wall(face);
         let axis = face.axis();
+        let grain = self.grain(row);
         let inward = if face.upper { -1.0 } else { 1.0 };
-        let growth = inward * 0.5 * self.grain(row).diameter * self.laws.growth;
         let before = self.bodies[row as usize].velocity;
-        let normal = before[axis] - self.walls.speed(face, self.now) - growth;
+        // The wall moves, and a growing grain meets it sooner.
+        let surface = self.walls.speed(face, self.now) + inward * 0.5 * grain.diameter * self.laws.growth;
+        let normal = before[axis] - surface;
         if inward * normal < 0.0 {
             let wait = self.time_since_collision(row);
-            let (restitution, mut cured) = self.laws.cure.restitution(wall.restitution, normal.abs(), [wait; 2]);
-            let mut after = before;
-            match wall.kind {
-                WallKind::Smooth | WallKind::Vibrating { .. } => {}
-                WallKind::Rough { velocity } => after = velocity * 2.0 - before,
-                WallKind::Statistical { reversal_probability } => {
-                    if self.stream(row, Phase::Wall).uniform() < reversal_probability {
-                        after = -before;
-                    }
-                }
-            }
+            let (restitution, mut cured) =
+                cured_restitution(&self.laws.cure, wall.restitution, normal.abs(), [wait; 2]);
+            let mut after = self.along_wall(row, wall.kind, before);
             after[axis] = before[axis] - (1.0 + restitution) * normal;
-            if restitution < 1.0 && self.laws.cure.rotation.is_some() {
+            if let Some(largest) = self.laws.cure.rotation.filter(|_| restitution < 1.0) {
                 let mut random = self.stream(row, Phase::Rotation);
-                let speed = self.walls.speed(face, self.now);
-                after = self.laws.cure.turn_at_wall(after, V::along(axis, speed), V::along(axis, inward), &mut random);
+                let frame = V::along(axis, surface);
+                let mut turned = (after - frame).turns(largest, &mut random).into_iter();
+                after = turned.find(|turned| inward * turned[axis] > 0.0).map_or(after, |turned| turned + frame);
                 cured = true;
             }
             self.bodies[row as usize].velocity = after;
-            self.counts.wall_momentum[axis][face.side()] += (before - after) * self.grain(row).mass;
+            self.counts.wall_momentum[axis][face.side()] += (before - after) * grain.mass;
             self.events.wall_hits += 1;
             self.events.cured += u64::from(cured);
             self.note_collision(row)?;
         }
         self.foresee(row);
         Ok(())
+    }
+
+    /// The velocity of the grain in `row` after a hit on a wall of this kind, but for its normal part.
+    fn along_wall(&self, row: u32, kind: WallKind<V>, before: V) -> V {
+        match kind {
+            WallKind::Smooth | WallKind::Vibrating { .. } => before,
+            WallKind::Rough { velocity } => velocity * 2.0 - before,
+            WallKind::Statistical { reversal_probability } => {
+                let reversed = self.stream(row, Phase::Wall).uniform() < reversal_probability;
+                if reversed { -before } else { before }
+            }
+        }
     }
 
     /// The grain in `row` leaves the box through an open side.
