@@ -72,7 +72,7 @@ fn state(count: u32, time: f64) -> SavedState<'static, DVec2> {
         compensation: -0.0,
         columns: std::borrow::Cow::Owned(grains(count, time)),
         next_id: count,
-        engine: EngineState { step: 12, largest_speed: 1.0, collision_rate: -1.0 },
+        engine: EngineState { step: 12, largest_speed: 1.0, collision_rate: -1.0, ..Default::default() },
         last_poured: -1.0,
         samples: vec![1, 0, 3],
         memories: vec![("energy".to_owned(), vec![0.1, -0.0]), ("none".to_owned(), Vec::new())],

@@ -1,7 +1,7 @@
 //! Heaps (Müller 2001, sections 2.4 and 3.5): they stand without static friction, and they rest.
 
 use glam::DVec2;
-use grainflow::engine::{Engine, NoLaps};
+use grainflow::engine::{Engine, Horizon, NoLaps};
 use grainflow::matter::gas::Gas;
 use grainflow::observe::moments::kinetic_energy;
 use grainflow::scenario::model::Scenario;
@@ -150,7 +150,7 @@ fn end_with(scenario: &Scenario<DVec2>, interfere: Interference) -> (f64, f64) {
         pouring.pour(&mut gas, capacity).unwrap();
         let mut before = vec![DVec2::NAN; gas.next_id() as usize];
         gas.ids().iter().zip(gas.positions()).for_each(|(&id, &place)| before[id as usize] = place);
-        let report = engine.step(&mut gas, &mut NoLaps).unwrap();
+        let report = engine.step(&mut gas, Horizon::NONE, &mut NoLaps).unwrap();
         interfere(&mut gas, &before, scenario.gravity * report.duration);
         engine.forget_pace();
     }
