@@ -183,7 +183,8 @@ fn go_on<V: Vector>(
         if stop.load(Relaxed) {
             return Ok(Ending::Interrupted);
         }
-        simulation.advance(watch).map_err(StepError::Simulation)?;
+        let horizon = recorder.horizon(simulation);
+        simulation.advance(watch, horizon).map_err(StepError::Simulation)?;
     }
 }
 
