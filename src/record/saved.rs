@@ -28,7 +28,7 @@ pub(crate) fn parts<V: Vector>(state: &SavedState<'_, V>) -> impl Iterator<Item 
 }
 
 /// The share of `rows` out of `grains` in `items`: the shares of all parts make the whole.
-fn share<T>(items: &[T], rows: &Range<usize>, grains: usize) -> &[T] {
+fn share<'a, T>(items: &'a [T], rows: &Range<usize>, grains: usize) -> &'a [T] {
     let place = |row: usize| match grains {
         0 => items.len(),
         _ => (items.len() as u128 * row as u128 / grains as u128) as usize,
@@ -197,7 +197,7 @@ fn events_message(events: &EventCounts) -> Events {
         list_renewals: events.list_renewals,
         annulled: events.annulled,
         cured: events.cured,
-        impacts: if events.all > 0 { events.impacts.to_vec() } else { Vec::new() },
+        impacts: events.impacts.to_vec(),
     }
 }
 

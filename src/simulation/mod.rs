@@ -47,6 +47,7 @@ pub struct Simulation<'s, V: Vector> {
     measures: Vec<Box<dyn Measure<V>>>,
     samples: Vec<u64>,
     beginning: Beginning<V>,
+    invalid_states: Option<u64>,
 }
 
 impl<'s, V: Vector> Simulation<'s, V> {
@@ -67,6 +68,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
         };
         let mut simulation = Self::assemble(scenario, gas, beginning);
         simulation.take_samples();
+        simulation.audit();
         Ok(simulation)
     }
 
@@ -100,6 +102,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             samples: vec![0; measures.len()],
             measures,
             beginning,
+            invalid_states: None,
         }
     }
 
@@ -165,6 +168,26 @@ impl<'s, V: Vector> Simulation<'s, V> {
                 }
             }
         }
+    }
+
+    /// Looks whether grains overlap that must not, and counts the state as invalid if any do.
+    pub fn audit(&mut self) {
+        if let Some(overlaps) = self.overlaps() {
+            *self.invalid_states.get_or_insert(0) += u64::from(overlaps > 0);
+        }
+    }
+
+    /// Pairs of grains, and grains and walls, that overlap; `None` for engines that allow it.
+    ///
+    /// TO CONNECT: `matter::overlaps::overlaps(&self.gas, &self.scenario.boundary)` where `None` stands.
+    fn overlaps(&self) -> Option<u64> {
+        self.is_event_driven().then_some(())?;
+        None
+    }
+
+    /// States with overlaps among those that were audited; `None` where none was.
+    pub fn invalid_states(&self) -> Option<u64> {
+        self.invalid_states
     }
 
     /// Whether a limit is reached, and which.
