@@ -31,7 +31,7 @@ impl ImpactParameter {
     /// The measure for `setting`, if its collisions are known one by one.
     pub fn new<V: Vector>(setting: &Setting<V>) -> Option<Self> {
         let samples = Samples::new(IMPACT_BINS);
-        setting.counts_impacts.then(|| ImpactParameter { is_flat: V::DIMENSION == 2, samples })
+        setting.counts_impacts.then_some(ImpactParameter { is_flat: V::DIMENSION == 2, samples })
     }
 
     /// ∫ p from 0 to `b` without its norm.

@@ -160,12 +160,11 @@ impl<'s, V: Vector> Simulation<'s, V> {
                         *taken += 1;
                     }
                 }
-                Some(spread) => {
-                    if spread.is_due(*taken, time, progress) {
-                        measure.sample(&snapshot);
-                        *taken = spread.next(time, progress);
-                    }
+                Some(spread) if spread.is_due(*taken, time, progress) => {
+                    measure.sample(&snapshot);
+                    *taken = spread.next(time, progress);
                 }
+                Some(_) => {}
             }
         }
     }
