@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use grainflow::engine::NoLaps;
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::matter::gas::Gas;
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::observe::moments;
@@ -193,7 +193,7 @@ fn check<V: Vector>(draw: &Draw, scenario: &Scenario<V>) {
     let mut simulation = Simulation::start(scenario, gas, &mut NoLaps).unwrap();
     let mut energy = moments::kinetic_energy(simulation.gas());
     while simulation.end_reason().is_none() {
-        match simulation.advance(&mut NoLaps) {
+        match simulation.advance(&mut NoLaps, Horizon::NONE) {
             Ok(()) => {}
             // A source has grown its heap to the top of the box: an end like others.
             Err(SimulationError::Pouring(_)) => return,

@@ -72,7 +72,7 @@ fn state(count: u32, time: f64) -> SavedState<'static, DVec2> {
         compensation: -0.0,
         columns: std::borrow::Cow::Owned(grains(count, time)),
         next_id: count,
-        engine: EngineState { step: 12, largest_speed: 1.0, collision_rate: -1.0 },
+        engine: EngineState { step: 12, largest_speed: 1.0, collision_rate: -1.0, ..Default::default() },
         last_poured: -1.0,
         samples: vec![1, 0, 3],
         memories: vec![("energy".to_owned(), vec![0.1, -0.0]), ("none".to_owned(), Vec::new())],
@@ -386,6 +386,15 @@ fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedStat
                 counted.removed,
             ] = counts;
             counted.wall_momentum = momentum;
+            state.held_until = floats[2];
+            state.engine.numbers = floats.repeat(counts[7] as usize % 5);
+            state.engine.words = counts.map(|count| count as u32).repeat(counts[8] as usize % 3);
+            state.totals.since.grains = counts[9];
+            state.totals.since.collisions = counts[10];
+            state.totals.since.collisions_per_particle = floats[3];
+            state.totals.events.all = counts[0].max(1);
+            state.totals.events.cured = counts[1];
+            state.totals.events.impacts[39] = counts[2];
             state
         },
     )
@@ -402,8 +411,10 @@ fn bits<V: Vector>(state: &SavedState<'_, V>) -> String {
     let totals = &state.totals;
     let counts = &totals.counts;
     format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         [
+            state.held_until,
+            totals.since.collisions_per_particle,
             state.time,
             state.compensation,
             state.last_poured,
@@ -420,6 +431,9 @@ fn bits<V: Vector>(state: &SavedState<'_, V>) -> String {
         (&columns.ids, &columns.species),
         columns.spins.as_ref().map(|spins| spins.iter().map(spin).collect::<Vec<_>>()),
         state.memories.iter().map(memory).collect::<Vec<_>>(),
+        state.engine.numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>(),
+        &state.engine.words,
+        (totals.events, totals.since.grains, totals.since.collisions),
     )
 }
 

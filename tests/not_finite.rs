@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec2;
-use grainflow::engine::{EngineError, NoLaps};
+use grainflow::engine::{EngineError, Horizon, NoLaps};
 use grainflow::matter::columns::Columns;
 use grainflow::matter::gas::Gas;
 use grainflow::scenario::model::{AnyScenario, Scenario};
@@ -48,14 +48,14 @@ fn error_after(
     let gas: Gas<DVec2> = initial::build(scenario, None).unwrap();
     let mut simulation = Simulation::start(scenario, gas, &mut NoLaps).unwrap();
     for _ in 0..STEPS_BEFORE {
-        simulation.advance(&mut NoLaps).unwrap();
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
     let mut saved = simulation.saved_state(0, 0);
     let row = saved.columns.ids.iter().position(|&other| other == id).unwrap();
     let cell = simulation.gas().grid().cell_of(saved.columns.positions[row]);
     spoil(saved.columns.to_mut(), row);
     let mut simulation = Simulation::resume(scenario, saved);
-    match simulation.advance(&mut NoLaps).unwrap_err() {
+    match simulation.advance(&mut NoLaps, Horizon::NONE).unwrap_err() {
         SimulationError::Engine(error) => (error, cell),
         other => panic!("{other}"),
     }

@@ -8,7 +8,7 @@ mod small_scenarios;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use grainflow::engine::NoLaps;
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::matter::state_hash::state_hash;
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::reader::{last_state, read_log, read_states};
@@ -84,7 +84,7 @@ fn simulate(scenario: &AnyScenario, looking: bool) -> End {
     in_its_space!(scenario, scenario => {
         let mut simulation = start(scenario);
         while simulation.end_reason().is_none() {
-            simulation.advance(&mut NoLaps).unwrap();
+            simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
             if looking {
                 look(&mut simulation);
             }
@@ -100,7 +100,7 @@ fn by_engine_alone(scenario: &AnyScenario) -> String {
         let mut engine =
             assembly::engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
         for _ in 0..scenario.run.steps.unwrap() {
-            engine.step(&mut gas, &mut NoLaps).unwrap();
+            engine.step(&mut gas, Horizon::NONE, &mut NoLaps).unwrap();
         }
         state_hash(&gas)
     })
@@ -174,7 +174,7 @@ fn with_restart(scenario: &AnyScenario, saved_at: u64, log: Option<&Path>) -> (E
         let mut simulation = start(scenario);
         let mut looks = Vec::new();
         while simulation.end_reason().is_none() {
-            simulation.advance(&mut NoLaps).unwrap();
+            simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
             let steps = simulation.totals().steps;
             if steps.is_multiple_of(LOOKS) {
                 let look = look(&mut simulation);
@@ -241,7 +241,7 @@ fn resumed_end<V: Vector>(scenario: &Scenario<V>, log: &Path, state: usize) -> (
     let saved = read_states::<V>(log).unwrap().swap_remove(state);
     let mut simulation = Simulation::resume(scenario, saved);
     while simulation.end_reason().is_none() {
-        simulation.advance(&mut NoLaps).unwrap();
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
     let from = 0.5 * simulation.gas().time();
     let (measures, snapshot) = simulation.observation();

@@ -1,5 +1,6 @@
 //! The gases that engines and yardstick are timed on: elastic, ν = 0.25, ten grains per cell.
 
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::law::kinetic_theory::collision_frequency;
 use grainflow::matter::grain::Grain;
 use grainflow::scenario::model::AnyScenario;
@@ -61,6 +62,6 @@ fn boxed<V: Vector>(scenario: &grainflow::scenario::model::Scenario<V>) -> Box<d
     let mut gas = initial::build(scenario, None).expect("a random gas can be built");
     let mut engine = assembly::engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
     Box::new(move || {
-        engine.step(&mut gas, &mut grainflow::engine::NoLaps).expect("an elastic gas goes on for ever");
+        engine.step(&mut gas, Horizon::NONE, &mut NoLaps).expect("an elastic gas goes on for ever");
     })
 }

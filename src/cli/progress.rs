@@ -20,7 +20,8 @@ pub(super) struct Progress {
     quiet: bool,
     watch: Stopwatch,
     last: f64,
-    last_steps: u64,
+    /// Particle-steps or events at the last time.
+    last_work: u64,
 }
 
 impl Progress {
@@ -33,7 +34,7 @@ impl Progress {
             );
             bar
         });
-        Progress { bar, quiet, watch: Stopwatch::default(), last: 0.0, last_steps: 0 }
+        Progress { bar, quiet, watch: Stopwatch::default(), last: 0.0, last_work: 0 }
     }
 
     /// Shows `status`, if it is time to.
@@ -46,10 +47,14 @@ impl Progress {
         if pause < if self.bar.is_some() { BAR_SECONDS } else { LINE_SECONDS } {
             return;
         }
-        let speed = (status.particle_steps - self.last_steps) as f64 / pause;
-        (self.last, self.last_steps) = (now, status.particle_steps);
+        let (work, name) = match status.events {
+            0 => (status.particle_steps, "particle-steps"),
+            events => (events, "events"),
+        };
+        let speed = work.saturating_sub(self.last_work) as f64 / pause;
+        (self.last, self.last_work) = (now, work);
         let line = format!(
-            "t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M particle-steps/s",
+            "t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M {name}/s",
             status.time,
             status.grains,
             status.collisions_per_particle,

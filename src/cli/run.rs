@@ -103,12 +103,15 @@ fn closing_words(outcome: &Outcome) -> String {
         false => format!("ended by its limit on {}", summary["end_reason"].as_str().unwrap_or("?")),
     };
     text += &format!(
-        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {} steps, {:.1} s\n",
+        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {}, {:.1} s\n",
         summary["scenario"].as_str().unwrap_or("?"),
         summary["engine"].as_str().unwrap_or("?"),
         number("simulated_time").unwrap_or(0.0),
         number("collisions_per_particle").unwrap_or(0.0),
-        summary["steps"],
+        match summary["events"].as_u64() {
+            Some(events) => format!("{events} events"),
+            None => format!("{} steps", summary["steps"]),
+        },
         number("wall_seconds").unwrap_or(0.0),
     );
     for (name, value) in summary.iter() {
@@ -127,6 +130,9 @@ fn closing_words(outcome: &Outcome) -> String {
     text += &format!("  time went to: {}\n", laps.join(", "));
     if let Some(speed) = number("particle_steps_per_second") {
         text += &format!("  {:.1} million particle-steps per second\n", speed * 1e-6);
+    }
+    if let Some(speed) = number("events_per_second") {
+        text += &format!("  {:.2} million events per second\n", speed * 1e-6);
     }
     text += &format!("wrote {}\n", outcome.folder.join("report.html").display());
     text

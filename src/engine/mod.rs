@@ -30,6 +30,12 @@ pub trait Engine<V: Vector>: Send {
 
     /// Grains that make a cell full, for engines with an excluded volume.
     fn capacity(&self, gas: &Gas<V>) -> Option<u32>;
+
+    /// Whether grains never overlap, so that none may be put where another one is. Such an engine works
+    /// event by event and has no steps.
+    fn excludes_overlap(&self) -> bool {
+        false
+    }
 }
 
 /// Where somebody wants to look at the gas next. An engine without steps of its own stops there; where it stops

@@ -121,6 +121,20 @@ pub struct Totals<V> {
     pub counts: Counts<V>,
     /// The events, where the engine has events.
     pub events: EventCounts,
+    /// From where an engine without steps counts collisions per particle.
+    pub since: Since,
+}
+
+/// When the number of grains last changed: from here on collisions per particle are counted anew, so that they
+/// do not depend on where an engine without steps was stopped.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Since {
+    /// Grains from then on.
+    pub grains: u64,
+    /// Collisions up to then.
+    pub collisions: u64,
+    /// Collisions per particle up to then.
+    pub collisions_per_particle: f64,
 }
 
 impl<V: Vector> Totals<V> {
@@ -129,10 +143,92 @@ impl<V: Vector> Totals<V> {
         self.steps += report.steps;
         self.steps_capped += u64::from(report.capped);
         self.particle_steps += report.steps * grains as u64;
-        if grains > 0 {
+        if report.steps == 0 {
+            self.since = self.since_change(grains);
+            self.collisions_per_particle = self.per_particle_after(report.counts.collisions, grains);
+        } else if grains > 0 {
             self.collisions_per_particle += 2.0 * report.counts.collisions as f64 / grains as f64;
         }
         self.counts.add(&report.counts);
         self.events.add(&report.events);
+    }
+
+    /// From where collisions of a gas of `grains` grains count: from now on, if their number is new.
+    fn since_change(&self, grains: usize) -> Since {
+        if self.since.grains == grains as u64 {
+            return self.since;
+        }
+        Since {
+            grains: grains as u64,
+            collisions: self.counts.collisions,
+            collisions_per_particle: self.collisions_per_particle,
+        }
+    }
+
+    /// Collisions per particle after so many `further` collisions of `grains` grains in an engine without steps.
+    pub fn per_particle_after(&self, further: u64, grains: usize) -> f64 {
+        let since = self.since_change(grains);
+        if grains == 0 {
+            return since.collisions_per_particle;
+        }
+        let collisions = self.counts.collisions - since.collisions + further;
+        since.collisions_per_particle + 2.0 * collisions as f64 / grains as f64
+    }
+
+    /// The fewest further collisions of `grains` grains, one at least, after which `is_reached` holds of the
+    /// collisions per particle; `goal` is about where that is.
+    pub fn collisions_until(&self, grains: usize, goal: f64, is_reached: impl Fn(f64) -> bool) -> u64 {
+        if grains == 0 || !goal.is_finite() {
+            return u64::MAX;
+        }
+        let missing = (0.5 * (goal - self.collisions_per_particle) * grains as f64).ceil();
+        let mut further = (missing.max(1.0) as u64).min(u64::MAX / 4);
+        let is_enough = |further: u64| is_reached(self.per_particle_after(further, grains));
+        while further > 1 && is_enough(further - 1) {
+            further -= 1;
+        }
+        while further < u64::MAX / 2 && !is_enough(further) {
+            further += 1;
+        }
+        further
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    fn collided(collisions: u64) -> StepReport<DVec2> {
+        StepReport { counts: Counts { collisions, ..Counts::default() }, ..StepReport::default() }
+    }
+
+    #[test]
+    fn where_an_engine_without_steps_stops_does_not_matter() {
+        let (mut whole, mut cut) = (Totals::default(), Totals::default());
+        whole.add(&collided(1000), 7);
+        whole.add(&collided(300), 11);
+        for _ in 0..1000 {
+            cut.add(&collided(1), 7);
+        }
+        for _ in 0..100 {
+            cut.add(&collided(3), 11);
+        }
+        assert_eq!(whole, cut);
+        assert!((whole.collisions_per_particle - (2000.0 / 7.0 + 600.0 / 11.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_collisions_that_are_missing_are_exact() {
+        let mut totals = Totals::default();
+        totals.add(&collided(5), 9);
+        for k in 1..400 {
+            let place = f64::from(k) / 400.0;
+            let is_reached = |per_particle: f64| per_particle / 31.7 >= place;
+            let missing = totals.collisions_until(9, place * 31.7, is_reached);
+            assert!(is_reached(totals.per_particle_after(missing, 9)));
+            assert!(missing == 1 || !is_reached(totals.per_particle_after(missing - 1, 9)));
+        }
+        assert_eq!(totals.collisions_until(0, 1.0, |_| true), u64::MAX);
     }
 }

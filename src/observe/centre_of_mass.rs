@@ -25,7 +25,12 @@ impl CentreOfMass {
 
     /// The height [length]; NaN without grains.
     fn height<V: Vector>(&self, gas: &Gas<V>) -> f64 {
-        moments::sum(gas.positions(), |&position| self.floor.height(position)) / gas.len() as f64
+        if gas.species.is_empty() {
+            return moments::sum(gas.positions(), |&position| self.floor.height(position)) / gas.len() as f64;
+        }
+        let mass = moments::sum_rows(gas.len(), |row| gas.grain_at(row).mass);
+        let weighted = |row: usize| gas.grain_at(row).mass * self.floor.height(gas.positions()[row]);
+        moments::sum_rows(gas.len(), weighted) / mass
     }
 }
 

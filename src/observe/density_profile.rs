@@ -27,17 +27,20 @@ impl<V: Vector> Measure<V> for DensityProfile {
 
     fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
         let gas = snapshot.gas;
-        let counts = slices::counts(gas, self.axis);
-        let slice_volume = gas.grid().size().product() / counts.len() as f64;
-        let share = gas.grain.volume::<V>() / slice_volume;
+        let centres = slices::centres(gas, self.axis);
+        let slice_volume = gas.grid().size().product() / centres.len() as f64;
+        let fractions = if gas.species.is_empty() {
+            let share = gas.grain.volume::<V>() / slice_volume;
+            let counts = slices::counts(gas, self.axis);
+            counts.into_iter().map(|count| f64::from(count) * share).collect()
+        } else {
+            slices::volumes(gas, self.axis).into_iter().map(|volume| volume / slice_volume).collect()
+        };
         vec![Profile {
             name: "density-profile".to_owned(),
             time: gas.time(),
             columns: vec![column("position", LENGTH), column("volume_fraction", PURE)],
-            values: vec![
-                slices::centres(gas, self.axis),
-                counts.into_iter().map(|count| f64::from(count) * share).collect(),
-            ],
+            values: vec![centres, fractions],
         }]
     }
 }
@@ -46,6 +49,7 @@ impl<V: Vector> Measure<V> for DensityProfile {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
+    use crate::matter::grain::Grain;
     use crate::observe::testing::{assert_resumes, setting_of};
     use glam::DVec3;
     use std::f64::consts::PI;
@@ -65,6 +69,19 @@ mod tests {
         for (found, expected) in profiles[0].values[1].iter().zip(expected) {
             assert!((found - expected).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn grains_of_a_mixture_fill_by_their_volumes() {
+        let bed = setting_of(DVec3::new(2.0, 4.0, 6.0), [1, 2, 3]);
+        let positions = vec![DVec3::new(1.0, 1.0, 5.0), DVec3::new(1.0, 3.0, 5.0)];
+        let mut gas = bed.gas(0.0, positions, vec![DVec3::ZERO; 2]);
+        gas.species = vec![Grain { diameter: 1.0, mass: 1.0 }, Grain { diameter: 0.5, mass: 1.0 }];
+        gas.parts_mut().2.species = Some(vec![0, 1]);
+        let totals = Totals::default();
+        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot { gas: &gas, totals: &totals });
+        assert!((profiles[0].values[1][2] - PI / 96.0 * 1.125).abs() < 1e-15);
+        assert_eq!(profiles[0].values[1][..2], [0.0, 0.0]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! `energy`: kinetic energy, temperature, collisions and grains at every recording.
 
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
-use super::moments::{kinetic_energy, momentum, momentum_scale, temperature};
+use super::moments::{kinetic_energy, momentum, momentum_scale, rotational_energy, temperature};
 use super::samples::figure;
 use super::setting::Setting;
 use super::units::{ENERGY, PURE, column};
@@ -13,6 +13,8 @@ use crate::statistics::Estimate;
 pub struct Energy<V> {
     /// Whether nothing outside the gas can change its momentum.
     is_free: bool,
+    /// z = I/(m a²) of rough grains.
+    reduced_inertia: Option<f64>,
     start: Option<Start<V>>,
 }
 
@@ -28,7 +30,8 @@ impl<V: Vector> Energy<V> {
     /// The measure for `setting`; every one has it.
     pub fn new(setting: &Setting<V>) -> Self {
         let is_free = setting.boundary.is_fully_periodic() && setting.gravity == V::ZERO;
-        Energy { is_free, start: None }
+        let reduced_inertia = setting.roughness.map(|roughness| roughness.reduced_inertia);
+        Energy { is_free, reduced_inertia, start: None }
     }
 
     fn remember_start(&mut self, snapshot: &Snapshot<'_, V>) {
@@ -56,30 +59,37 @@ impl<V: Vector> Measure<V> for Energy<V> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        vec![
+        let mut columns = vec![
             column("kinetic_energy", ENERGY),
             column("temperature", ENERGY),
             column("collisions_per_particle", PURE),
             column("grains", PURE),
-        ]
+        ];
+        columns.extend(self.reduced_inertia.map(|_| column("rotational_energy", ENERGY)));
+        columns
     }
 
     fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
         self.remember_start(snapshot);
         let Snapshot { gas, totals } = snapshot;
         let temperature = if gas.is_empty() { f64::NAN } else { temperature(gas) };
-        vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64]
+        let mut values =
+            vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64];
+        values.extend(self.reduced_inertia.map(|z| rotational_energy(gas, z)));
+        values
     }
 
     fn conclusion(&self, snapshot: &Snapshot<'_, V>, _from: f64) -> (Vec<Profile>, Vec<Figure>) {
         let exact = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
         let temperature = (!snapshot.gas.is_empty()).then(|| temperature(snapshot.gas));
-        let figures = vec![
+        let mut figures = vec![
             figure("kinetic_energy_initial", exact(self.start.map(|start| start.kinetic_energy))),
             figure("kinetic_energy_final", exact(Some(kinetic_energy(snapshot.gas)))),
             figure("temperature", exact(temperature)),
             figure("momentum_drift", exact(self.momentum_drift(snapshot))),
         ];
+        let rotation = self.reduced_inertia.map(|z| rotational_energy(snapshot.gas, z));
+        figures.extend(rotation.map(|energy| figure("rotational_energy", exact(Some(energy)))));
         (Vec::new(), figures)
     }
 
@@ -108,6 +118,7 @@ impl<V: Vector> Measure<V> for Energy<V> {
 mod tests {
     use super::*;
     use crate::engine::report::Totals;
+    use crate::law::roughness::Roughness;
     use crate::observe::testing::{assert_resumes, figure_of, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
@@ -128,6 +139,19 @@ mod tests {
         bed.walls(0, smooth(), smooth());
         let drift = figure_of(&mut Energy::new(&bed.setting), &states, 0.0, "momentum_drift");
         assert_eq!(drift.0, None);
+    }
+
+    #[test]
+    fn rough_grains_have_energy_of_rotation() {
+        let mut bed = setting_of(DVec2::splat(4.0), [1, 1, 1]);
+        bed.setting.roughness = Some(Roughness { tangential_restitution: 0.0, reduced_inertia: 0.5 });
+        let mut gas = bed.gas(0.0, vec![DVec2::ONE; 2], vec![DVec2::X; 2]);
+        gas.parts_mut().2.spins = Some(vec![[4.0], [0.0]]);
+        let state = (gas, Totals::default());
+        // ½ · ½ · ¼ · 16.
+        assert_eq!(show(&mut Energy::new(&bed.setting), &state)[4], 1.0);
+        let figure = figure_of(&mut Energy::new(&bed.setting), &[state], 0.0, "rotational_energy");
+        assert_eq!(figure, (Some(1.0), None));
     }
 
     #[test]

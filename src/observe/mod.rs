@@ -1,11 +1,13 @@
 //! Observation: one measure a file, each reads the gas and the totals and changes neither.
 
 pub mod centre_of_mass;
+pub mod collisions;
 pub mod density_contrast;
 pub mod density_profile;
 pub mod energy;
 pub mod flow;
 pub mod heap;
+pub mod impact_parameter;
 pub mod measure;
 pub mod moments;
 pub mod pressure;
@@ -27,12 +29,14 @@ use measure::Measure;
 use setting::Setting;
 
 /// The names of all measures, in the order in which [`measures`] gives those that apply.
-pub const NAMES: [&str; 10] = [
+pub const NAMES: [&str; 12] = [
     "energy",
     "density-profile",
     "velocity-profile",
     "wall-stress",
     "pressure",
+    "collisions",
+    "impact-parameter",
     "flow",
     "density-contrast",
     "spectrum",
@@ -42,12 +46,14 @@ pub const NAMES: [&str; 10] = [
 
 /// All measures that apply to `setting`, always in the same order.
 pub fn measures<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
-    let applying: [Option<Box<dyn Measure<V>>>; 10] = [
+    let applying: [Option<Box<dyn Measure<V>>>; 12] = [
         Some(Box::new(energy::Energy::new(setting))),
         Some(Box::new(density_profile::DensityProfile::new(setting))),
         boxed(velocity_profile::VelocityProfile::new(setting)),
         boxed(wall_stress::WallStress::new(setting)),
         boxed(pressure::Pressure::new(setting)),
+        Some(Box::new(collisions::Collisions::new())),
+        boxed(impact_parameter::ImpactParameter::new(setting)),
         boxed(flow::Flow::new(setting)),
         boxed(density_contrast::DensityContrast::new(setting)),
         boxed(spectrum::Spectrum::new(setting)),
@@ -79,17 +85,34 @@ mod tests {
     #[test]
     fn every_kind_of_scenario_has_its_measures() {
         let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
-        assert_eq!(names(&bed), ["energy", "density-profile", "pressure"]);
+        assert_eq!(names(&bed), ["energy", "density-profile", "pressure", "collisions"]);
+        bed.setting.counts_impacts = true;
+        assert_eq!(names(&bed)[3..], ["collisions", "impact-parameter"]);
+        bed.setting.counts_impacts = false;
         bed.walls(1, rough(DVec2::ZERO), rough(DVec2::X));
-        assert_eq!(names(&bed), ["energy", "density-profile", "velocity-profile", "wall-stress"]);
+        assert_eq!(
+            names(&bed),
+            ["energy", "density-profile", "velocity-profile", "wall-stress", "collisions"]
+        );
         let mut pipe = setting_of(DVec3::splat(8.0), [4, 4, 4]);
         pipe.walls(0, smooth(), smooth());
         pipe.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
-        let expected = ["energy", "density-profile", "wall-stress", "flow", "density-contrast", "spectrum"];
+        let expected = [
+            "energy",
+            "density-profile",
+            "wall-stress",
+            "collisions",
+            "flow",
+            "density-contrast",
+            "spectrum",
+        ];
         assert_eq!(names(&pipe), expected);
         pipe.walls(0, Face::Open, Face::Open);
         pipe.walls(2, smooth(), Face::Open);
-        assert_eq!(names(&pipe), ["energy", "density-profile", "wall-stress", "heap", "centre-of-mass"]);
+        assert_eq!(
+            names(&pipe),
+            ["energy", "density-profile", "wall-stress", "collisions", "heap", "centre-of-mass"]
+        );
     }
 
     #[test]

@@ -2,13 +2,13 @@
 
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::moments::temperature;
-use super::samples::{Samples, figure, interval_mean, steady_rate};
+use super::samples::{Samples, figure, interval_mean};
 use super::setting::Setting;
-use super::units::{PURE, RATE, column, stress};
+use super::units::{PURE, column, stress};
 use crate::space::Vector;
 
 /// P = (N T + Σ p·s / (D Δt)) / V from the virial theorem (Hansen and McDonald 2006, section 2.2), the
-/// compressibility factor PV/NT, and collisions per particle and time.
+/// compressibility factor PV/NT.
 ///
 /// Between two looks at the gas T is taken as √(T₁T₂): the exact mean of a temperature that
 /// falls by Haff's law, and right to second order for any other.
@@ -22,14 +22,13 @@ pub struct Pressure {
     samples: Samples,
 }
 
-/// Time, temperature, Σ p·s, collisions per particle, grains.
-type Row = [f64; 5];
+/// Time, temperature, Σ p·s, grains.
+type Row = [f64; 4];
 
 /// What an interval between two rows says.
 struct Interval {
     pressure: f64,
     compressibility_factor: f64,
-    collision_frequency: f64,
 }
 
 impl Pressure {
@@ -40,32 +39,25 @@ impl Pressure {
             volume: setting.size.product(),
             dimension: V::DIMENSION as f64,
             previous: None,
-            samples: Samples::new(4),
+            samples: Samples::new(3),
         })
     }
 
     fn interval(&self, first: &[f64], last: &[f64]) -> Interval {
         let duration = last[0] - first[0];
-        let grains = last[4];
+        let grains = last[3];
         let thermal = grains * (first[1] * last[1]).sqrt();
         let collisional = (last[2] - first[2]) / (self.dimension * duration);
         Interval {
             pressure: (thermal + collisional) / self.volume,
             compressibility_factor: 1.0 + collisional / thermal,
-            collision_frequency: (last[3] - first[3]) / duration,
         }
     }
 }
 
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> Row {
     let Snapshot { gas, totals } = snapshot;
-    [
-        gas.time(),
-        temperature(gas),
-        totals.counts.carried_momentum,
-        totals.collisions_per_particle,
-        gas.len() as f64,
-    ]
+    [gas.time(), temperature(gas), totals.counts.carried_momentum, gas.len() as f64]
 }
 
 impl<V: Vector> Measure<V> for Pressure {
@@ -83,11 +75,7 @@ impl<V: Vector> Measure<V> for Pressure {
     }
 
     fn columns(&self) -> Vec<Column> {
-        vec![
-            column("pressure", stress::<V>()),
-            column("compressibility_factor", PURE),
-            column("collision_frequency", RATE),
-        ]
+        vec![column("pressure", stress::<V>()), column("compressibility_factor", PURE)]
     }
 
     fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
@@ -95,9 +83,9 @@ impl<V: Vector> Measure<V> for Pressure {
         match self.previous.replace(now) {
             Some(before) if before[0] < now[0] => {
                 let interval = self.interval(&before, &now);
-                vec![interval.pressure, interval.compressibility_factor, interval.collision_frequency]
+                vec![interval.pressure, interval.compressibility_factor]
             }
-            _ => vec![f64::NAN; 3],
+            _ => vec![f64::NAN; 2],
         }
     }
 
@@ -109,7 +97,6 @@ impl<V: Vector> Measure<V> for Pressure {
         let figures = vec![
             figure("pressure", mean(|interval| interval.pressure)),
             figure("compressibility_factor", mean(|interval| interval.compressibility_factor)),
-            figure("collision_frequency", steady_rate(&rows, |row| row[3])),
         ];
         (Vec::new(), figures)
     }
@@ -141,7 +128,7 @@ mod tests {
         let state = |time: f64| {
             let (speed, integral) =
                 if cooling { (1.0 / (1.0 + time / 5.0), time / (1.0 + time / 5.0)) } else { (1.0, time) };
-            let mut totals = Totals { collisions_per_particle: 3.0 * time, ..Totals::default() };
+            let mut totals = Totals::default();
             totals.counts.carried_momentum = carried * integral;
             let velocities = vec![DVec2::ONE * speed, -DVec2::ONE * speed];
             (bed.gas(time, vec![DVec2::ONE; 2], velocities), totals)
@@ -169,7 +156,6 @@ mod tests {
         // (2 + 6/2) / 16, and 1 + 3/2.
         assert!((figure(&cooling(false, 6.0), "pressure") - 0.3125).abs() < 1e-13);
         assert!((figure(&cooling(false, 6.0), "compressibility_factor") - 2.5).abs() < 1e-13);
-        assert!((figure(&cooling(false, 6.0), "collision_frequency") - 3.0).abs() < 1e-13);
         // A gas that cools by Haff's law keeps its compressibility factor, however coarse the look.
         assert!((figure(&cooling(true, 6.0), "compressibility_factor") - 2.5).abs() < 1e-12);
     }
@@ -181,7 +167,7 @@ mod tests {
         let states = cooling(false, 6.0);
         assert!(show(&mut measure, &states[0]).iter().all(|x| x.is_nan()));
         let values = show(&mut measure, &states[1]);
-        for (value, expected) in values.iter().zip([0.3125, 2.5, 3.0]) {
+        for (value, expected) in values.iter().zip([0.3125, 2.5]) {
             assert!((value - expected).abs() < 1e-14);
         }
     }

@@ -66,10 +66,19 @@ pub(crate) fn interval_mean(rows: &[&[f64]], value: impl Fn(&[f64], &[f64]) -> f
 
 /// Growth of a running total per time over all rows, with its error from blocks.
 pub(crate) fn steady_rate(rows: &[&[f64]], total: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
-    let rate = |first: &[f64], last: &[f64]| (total(last) - total(first)) / (last[0] - first[0]);
+    steady_ratio(rows, total, |row| row[0])
+}
+
+/// Growth of a running total per growth of another one over all rows, with its error from blocks.
+pub(crate) fn steady_ratio(
+    rows: &[&[f64]],
+    total: impl Fn(&[f64]) -> f64,
+    other: impl Fn(&[f64]) -> f64,
+) -> Option<Estimate> {
+    let ratio = |first: &[f64], last: &[f64]| (total(last) - total(first)) / (other(last) - other(first));
     let intervals = rows.len().checked_sub(1)?;
-    let parts: Vec<f64> = blocks(intervals).map(|block| rate(rows[block.start], rows[block.end])).collect();
-    let value = rate(rows[0], rows[intervals]);
+    let parts: Vec<f64> = blocks(intervals).map(|block| ratio(rows[block.start], rows[block.end])).collect();
+    let value = ratio(rows[0], rows[intervals]);
     value.is_finite().then(|| Estimate { value, standard_error: standard_error(&parts) })
 }
 

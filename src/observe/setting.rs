@@ -1,6 +1,7 @@
 //! What a measure may know of the place that it looks at, and of nothing else.
 
 use crate::law::boundary::Boundary;
+use crate::law::roughness::Roughness;
 use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 
@@ -19,4 +20,8 @@ pub struct Setting<V> {
     pub grain: Grain,
     /// Whether grains are poured in.
     pub is_poured: bool,
+    /// How rough grains are; `None` where they do not spin.
+    pub roughness: Option<Roughness>,
+    /// Whether the impact parameters of single collisions are counted.
+    pub counts_impacts: bool,
 }

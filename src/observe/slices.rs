@@ -21,6 +21,15 @@ pub(crate) fn counts<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<u32> {
     counts
 }
 
+/// Volume of the grains in each slice across `axis` [lengthᴰ], `[slice]`.
+pub(crate) fn volumes<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<f64> {
+    let mut volumes = vec![0.0; gas.grid().cells()[axis] as usize];
+    for (cell, slice) in slices_of_cells(gas, axis).enumerate() {
+        volumes[slice] += gas.rows(cell as u32).map(|row| gas.grain_at(row).volume::<V>()).sum::<f64>();
+    }
+    volumes
+}
+
 /// Sum of `value` over the velocities in each slice across `axis`, `[slice]`; in the order of cells
 /// for any number of threads.
 pub(crate) fn velocity_sums<V: Vector>(

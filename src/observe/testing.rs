@@ -2,7 +2,7 @@
 
 use super::measure::{Measure, Snapshot};
 use super::setting::Setting;
-use crate::engine::report::Totals;
+use crate::engine::report::{IMPACT_BINS, Totals};
 use crate::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
 use crate::matter::clock::Clock;
 use crate::matter::gas::Gas;
@@ -29,6 +29,8 @@ pub(crate) fn setting_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
             boundary: Boundary::periodic(),
             grain: Grain { diameter: 1.0, mass: 1.0 },
             is_poured: false,
+            roughness: None,
+            counts_impacts: false,
         },
     }
 }
@@ -59,6 +61,9 @@ impl<V: Vector> Bed<V> {
                 let gas = self.gas(k as f64, positions, random_velocities(1000 + k, grains));
                 if k > 0 {
                     totals.collisions_per_particle += random.uniform();
+                    totals.events.all += 1;
+                    let bin = (random.uniform() * IMPACT_BINS as f64) as usize;
+                    totals.events.impacts[bin.min(IMPACT_BINS - 1)] += grains as u64;
                     totals.counts.carried_momentum += random.uniform() * grains as f64;
                     for sides in &mut totals.counts.wall_momentum {
                         sides[0] += V::from_fn(|_| random.gaussian());

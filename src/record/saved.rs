@@ -4,25 +4,44 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::schema::grainflow::{
-    Beginning as BeginningMessage, Engine, Memory, State, Totals as TotalsMessage,
+    Beginning as BeginningMessage, Engine, Events, Memory, State, Totals as TotalsMessage,
 };
 use super::state::{Beginning, SavedState};
 use crate::engine::EngineState;
-use crate::engine::report::{Counts, Totals};
+use crate::engine::report::{Counts, EventCounts, Since, Totals};
 use crate::matter::columns::Columns;
 use crate::space::Vector;
 
 /// Grains in one part: about ten megabytes.
 const PART: usize = 1 << 18;
+/// Bytes of a grain that such a part is meant for.
+const GRAIN_BYTES: usize = 40;
 
-/// The rows of each part of a state of `grains` grains; an empty gas has one part.
-pub(crate) fn parts(grains: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..grains.max(1)).step_by(PART).map(move |first| first..(first + PART).min(grains))
+/// The rows of each part of `state`; an empty gas has one part. Where the engine holds much, parts have
+/// fewer rows, so that they do not get longer.
+pub(crate) fn parts<V: Vector>(state: &SavedState<'_, V>) -> impl Iterator<Item = Range<usize>> + use<V> {
+    let grains = state.columns.len();
+    let EngineState { numbers, words, .. } = &state.engine;
+    let engine_bytes = (8 * numbers.len() + 4 * words.len()) / grains.max(1);
+    let length = (PART * GRAIN_BYTES / (GRAIN_BYTES + engine_bytes)).max(1);
+    (0..grains.max(1)).step_by(length).map(move |first| first..(first + length).min(grains))
+}
+
+/// The share of `rows` out of `grains` in `items`: the shares of all parts make the whole.
+fn share<'a, T>(items: &'a [T], rows: &Range<usize>, grains: usize) -> &'a [T] {
+    let place = |row: usize| match grains {
+        0 => items.len(),
+        _ => (items.len() as u128 * row as u128 / grains as u128) as usize,
+    };
+    let first = if rows.start == 0 { 0 } else { place(rows.start) };
+    &items[first..place(rows.end)]
 }
 
 /// The part of `state` that holds `rows`.
 pub(crate) fn part<V: Vector>(state: &SavedState<'_, V>, rows: Range<usize>) -> State {
     let columns = &state.columns;
+    let numbers = share(&state.engine.numbers, &rows, columns.len());
+    let engine_words = share(&state.engine.words, &rows, columns.len());
     let mut message = State {
         time: Some(state.time),
         compensation: Some(state.compensation),
@@ -34,6 +53,8 @@ pub(crate) fn part<V: Vector>(state: &SavedState<'_, V>, rows: Range<usize>) -> 
         ids: columns.ids[rows.clone()].iter().flat_map(|id| id.to_le_bytes()).collect(),
         spins: columns.spins.as_ref().map(|spins| spin_bytes::<V>(&spins[rows.clone()])),
         species: columns.species.as_ref().map(|species| species[rows.clone()].to_vec()),
+        engine_numbers: numbers.iter().flat_map(|number| number.to_le_bytes()).collect(),
+        engine_words: engine_words.iter().flat_map(|word| word.to_le_bytes()).collect(),
         ..Default::default()
     };
     if rows.start == 0 {
@@ -73,6 +94,7 @@ impl<V: Vector> Assembly<V> {
             return Ok(None);
         };
         append(state.columns.to_mut(), part).ok_or("the columns of a state do not fit together")?;
+        append_engine(&mut state.engine, part).ok_or("what the engine held is cut off")?;
         if (state.columns.len() as u64) < *grains {
             return Ok(None);
         }
@@ -89,6 +111,7 @@ fn add_sums<V: Vector>(message: &mut State, state: &SavedState<'_, V>) {
     });
     message.totals = Some(totals_message(&state.totals));
     message.last_poured = Some(state.last_poured);
+    message.held_until = Some(state.held_until);
     message.recordings = state.recordings;
     message.states = state.states;
     message.beginning = Some(BeginningMessage {
@@ -122,6 +145,8 @@ fn sums_of<V: Vector>(part: &State) -> Option<SavedState<'static, V>> {
         },
         totals: totals_of(part.totals.as_ref()?)?,
         last_poured: part.last_poured?,
+        // Older logs have none: their sources were never held up.
+        held_until: part.held_until.unwrap_or(0.0),
         recordings: part.recordings,
         states: part.states,
         beginning: beginning_of(part.beginning.as_ref()?)?,
@@ -157,7 +182,39 @@ fn totals_message<V: Vector>(totals: &Totals<V>) -> TotalsMessage {
         removed: counts.removed,
         wall_momentum: counts.wall_momentum.iter().flatten().flat_map(|&vector| components(vector)).collect(),
         carried_momentum: Some(counts.carried_momentum),
+        events: Some(events_message(&totals.events)),
+        since_grains: totals.since.grains,
+        since_collisions: totals.since.collisions,
+        since_collisions_per_particle: Some(totals.since.collisions_per_particle),
     }
+}
+
+fn events_message(events: &EventCounts) -> Events {
+    Events {
+        all: events.all,
+        wall_hits: events.wall_hits,
+        crossings: events.crossings,
+        list_renewals: events.list_renewals,
+        annulled: events.annulled,
+        cured: events.cured,
+        impacts: events.impacts.to_vec(),
+    }
+}
+
+fn events_of(message: &Events) -> EventCounts {
+    let mut events = EventCounts {
+        all: message.all,
+        wall_hits: message.wall_hits,
+        crossings: message.crossings,
+        list_renewals: message.list_renewals,
+        annulled: message.annulled,
+        cured: message.cured,
+        ..EventCounts::default()
+    };
+    for (count, &stored) in events.impacts.iter_mut().zip(&message.impacts) {
+        *count = stored;
+    }
+    events
 }
 
 fn totals_of<V: Vector>(message: &TotalsMessage) -> Option<Totals<V>> {
@@ -184,7 +241,13 @@ fn totals_of<V: Vector>(message: &TotalsMessage) -> Option<Totals<V>> {
             wall_momentum,
             carried_momentum: message.carried_momentum?,
         },
-        ..Totals::default()
+        // Older logs know neither events nor when the number of grains changed.
+        events: message.events.as_ref().map(events_of).unwrap_or_default(),
+        since: Since {
+            grains: message.since_grains,
+            collisions: message.since_collisions,
+            collisions_per_particle: message.since_collisions_per_particle.unwrap_or(0.0),
+        },
     })
 }
 
@@ -206,6 +269,13 @@ fn append<V: Vector>(columns: &mut Columns<V>, part: &State) -> Option<()> {
         && columns.species.as_ref().is_none_or(|species| species.len() == n)
         && n as u64 <= part.grains;
     whole.then_some(())
+}
+
+/// Appends the share of `part` in what the engine held.
+fn append_engine(engine: &mut EngineState, part: &State) -> Option<()> {
+    engine.numbers.extend(words::<8>(&part.engine_numbers)?.map(f64::from_le_bytes));
+    engine.words.extend(words::<4>(&part.engine_words)?.map(u32::from_le_bytes));
+    Some(())
 }
 
 fn components<V: Vector>(vector: V) -> impl Iterator<Item = f64> {
@@ -242,4 +312,51 @@ fn spins_of<V: Vector>(bytes: &[u8]) -> Option<Vec<V::Spin>> {
         spin
     };
     spins.remainder().is_empty().then(|| spins.map(spin).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn what_an_engine_holds_is_shared_among_the_parts() {
+        let grains = 3 * PART + 5;
+        let numbers: Vec<f64> = (0..10 * grains + 3).map(|k| k as f64).collect();
+        let words: Vec<u32> = (0..17).collect();
+        let mut state = SavedState::<DVec2>::default();
+        let columns = state.columns.to_mut();
+        columns.positions.resize(grains, DVec2::ONE);
+        columns.velocities.resize(grains, DVec2::X);
+        columns.ids.extend(0..grains as u32);
+        state.engine = EngineState { numbers, words, ..EngineState::default() };
+        let mut assembly = Assembly::<DVec2>::default();
+        let mut whole = None;
+        for rows in parts(&state) {
+            assert!(whole.is_none());
+            let part = part(&state, rows);
+            assert!(prost::Message::encoded_len(&part) < 20_000_000);
+            whole = assembly.add(&part).unwrap();
+        }
+        assert_eq!(whole.unwrap(), state);
+    }
+
+    #[test]
+    fn an_engine_without_grains_keeps_what_it_holds() {
+        let mut state = SavedState::<DVec2>::default();
+        state.engine.words = vec![1, 2, 3];
+        assert_eq!(parts(&state).collect::<Vec<_>>(), vec![Range { start: 0, end: 0 }]);
+        let whole = Assembly::<DVec2>::default().add(&part(&state, 0..0)).unwrap();
+        assert_eq!(whole.unwrap(), state);
+    }
+
+    #[test]
+    fn older_states_have_no_events() {
+        let state = SavedState::<DVec2>::default();
+        let mut old = part(&state, 0..0);
+        old.held_until = None;
+        let totals = old.totals.as_mut().unwrap();
+        (totals.events, totals.since_collisions_per_particle) = (None, None);
+        assert_eq!(Assembly::<DVec2>::default().add(&old).unwrap().unwrap(), state);
+    }
 }

@@ -28,6 +28,8 @@ pub struct SavedState<'a, V: Vector> {
     pub totals: Totals<V>,
     /// When the last grain was poured [time]; −1 before.
     pub last_poured: f64,
+    /// Until when the source is held up by grains in its way [time]; 0 where it never was.
+    pub held_until: f64,
     /// Recordings made.
     pub recordings: u64,
     /// States saved before this one.

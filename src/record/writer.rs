@@ -153,7 +153,7 @@ impl LogWriter {
     pub fn state<V: Vector>(&mut self, state: &SavedState<'_, V>) -> Result<(), LogError> {
         self.checked(|log| {
             let tick = tick(state.time, log.time_scale);
-            for rows in saved::parts(state.columns.len()) {
+            for rows in saved::parts(state) {
                 log.states.write(&mut log.writer, tick, &saved::part(state, rows).encode_to_vec())?;
             }
             log.writer.flush()

@@ -39,10 +39,15 @@ const COMMON: [&str; 27] = [
 ];
 
 /// What an engine counts while it works.
-pub(super) const COUNTERS: [&str; 11] = [
+pub(super) const COUNTERS: [&str; 16] = [
     "steps",
     "steps_capped",
     "events",
+    "wall_hits",
+    "cell_crossings",
+    "list_renewals",
+    "annulled_events",
+    "invalid_states",
     "collisions",
     "candidates",
     "cell_collisions",
@@ -58,7 +63,7 @@ const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_pro
 
 /// Known figures in the order of their weight: name, powers of mass, length and time in two dimensions, and
 /// whether it is a mean over the second half of the run.
-const KNOWN: [(&str, [i8; 3], bool); 15] = [
+const KNOWN: [(&str, [i8; 3], bool); 19] = [
     ("heap_slope", [0, 0, 0], false),
     ("heap_height", [0, 1, 0], false),
     ("velocity_profile_slope", [0, 0, 0], true),
@@ -74,6 +79,10 @@ const KNOWN: [(&str, [i8; 3], bool); 15] = [
     ("compressibility_factor", [0, 0, 0], true),
     ("pressure", [1, 0, -2], true),
     ("collision_frequency", [0, 0, -1], true),
+    ("mean_free_time", [0, 0, 1], true),
+    ("mean_free_path", [0, 1, 0], true),
+    ("impact_c", [0, 0, 0], true),
+    ("rotational_energy", [1, 2, -2], false),
 ];
 
 /// A drift shows in no fewer recordings than these in the second half.
@@ -116,7 +125,7 @@ pub(super) fn unit_of(evidence: &Evidence<'_>, name: &str) -> String {
         _ => known.unwrap_or_default(),
     };
     // A force per area is one per length in two dimensions.
-    if mass == 1 && name != "temperature" {
+    if mass == 1 && !["temperature", "rotational_energy"].contains(&name) {
         length -= i8::from(evidence.setup.dimension == 3);
     }
     evidence.setup.unit(Dimension { mass, length, time })
@@ -126,7 +135,7 @@ pub(super) fn unit_of(evidence: &Evidence<'_>, name: &str) -> String {
 pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
     match name {
         // The mean of something that falls by decades is a number without a use.
-        "pressure" | "collision_frequency" => is_temperature_steady(evidence),
+        "pressure" | "collision_frequency" | "mean_free_time" => is_temperature_steady(evidence),
         "wall_normal_stress" => !is_floor_untouched(evidence.setup),
         _ => true,
     }

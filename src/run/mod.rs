@@ -85,8 +85,10 @@ pub struct Status {
     pub collisions_per_particle: f64,
     /// Grains now.
     pub grains: usize,
-    /// Particle-steps so far.
+    /// Particle-steps so far; 0 for engines without steps.
     pub particle_steps: u64,
+    /// Events so far; 0 for engines with steps.
+    pub events: u64,
 }
 
 /// What a finished run leaves.
@@ -150,6 +152,7 @@ fn run_in<V: Vector>(
         }
     };
     let recorded = recorder.finish(&mut simulation)?;
+    simulation.audit();
     let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
     series::write_tables(folder.path(), scenario, &recorded)?;
     write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
@@ -183,7 +186,8 @@ fn go_on<V: Vector>(
         if stop.load(Relaxed) {
             return Ok(Ending::Interrupted);
         }
-        simulation.advance(watch).map_err(StepError::Simulation)?;
+        let horizon = recorder.horizon(simulation);
+        simulation.advance(watch, horizon).map_err(StepError::Simulation)?;
     }
 }
 
@@ -194,6 +198,7 @@ fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
         collisions_per_particle: simulation.totals().collisions_per_particle,
         grains: simulation.gas().len(),
         particle_steps: simulation.totals().particle_steps,
+        events: simulation.totals().events.all,
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::NUMERICS;
+use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
 use crate::observe::measure::{Column, Dimension, Figure, Profile};
 use crate::record::contents::Walls;
@@ -23,7 +24,8 @@ pub(super) struct Recorder {
     states: Spread,
     recordings: u64,
     states_saved: u64,
-    last_recorded_step: Option<u64>,
+    /// Time, steps and events at the last recording.
+    last_recorded: Option<(f64, u64, u64)>,
     recorded: Recorded,
     /// `[measure]`: whether its series and profiles are stored.
     stored: Vec<bool>,
@@ -73,10 +75,16 @@ impl Recorder {
             states: Spread::Inside(plan.states),
             recordings: 0,
             states_saved: 0,
-            last_recorded_step: None,
+            last_recorded: None,
             recorded: Recorded { columns, ..Recorded::default() },
             stored,
         })
+    }
+
+    /// Where the next recording or saved state is due, for an engine that can stop there.
+    pub(super) fn horizon<V: Vector>(&self, simulation: &Simulation<'_, V>) -> Horizon {
+        let recording = simulation.horizon_of(self.frames, self.recordings);
+        recording.min(simulation.horizon_of(self.states, self.states_saved))
     }
 
     /// Makes the recording and saves the state that are due, if any.
@@ -101,7 +109,7 @@ impl Recorder {
         mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Recorded, LogError> {
-        if self.last_recorded_step != Some(simulation.totals().steps) {
+        if self.last_recorded != Some(place(simulation)) {
             self.record(simulation)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
@@ -127,7 +135,7 @@ impl Recorder {
     fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
         let most_points = simulation.scenario().record.points.map(|points| points as usize);
         let hash = state_hash(simulation.gas());
-        let step = simulation.totals().steps;
+        let place = place(simulation);
         let (measures, snapshot) = simulation.observation();
         let mut values = vec![snapshot.gas.time()];
         let mut profiles = Vec::new();
@@ -144,9 +152,15 @@ impl Recorder {
         })?;
         self.recorded.series.push(values);
         self.recorded.profiles.extend(profiles);
-        self.last_recorded_step = Some(step);
+        self.last_recorded = Some(place);
         Ok(())
     }
+}
+
+/// Time, steps and events: two states of a run that agree in them are the same.
+fn place<V: Vector>(simulation: &Simulation<'_, V>) -> (f64, u64, u64) {
+    let totals = simulation.totals();
+    (simulation.gas().time(), totals.steps, totals.events.all)
 }
 
 fn spread(plan: &RecordPlan) -> Spread {

@@ -19,7 +19,7 @@ pub(super) enum Ending {
 }
 
 /// Verbs that do not advance the state.
-const NOT_ADVANCING: [&str; 2] = ["recording", "measures"];
+const NOT_ADVANCING: [&str; 3] = ["recording", "measures", "synchronise"];
 
 /// The summary of a run that has ended. What does not apply is null.
 pub(super) fn summary<V: Vector>(
@@ -30,6 +30,7 @@ pub(super) fn summary<V: Vector>(
 ) -> Map<String, Value> {
     let mut summary = what_ran(simulation);
     summary.append(&mut what_happened(simulation, ending));
+    summary.append(&mut what_events_were(simulation));
     summary.append(&mut what_it_cost(simulation, watch));
     summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
     let fixed: Vec<String> = summary.keys().cloned().collect();
@@ -45,7 +46,7 @@ fn what_ran<V: Vector>(simulation: &Simulation<'_, V>) -> Map<String, Value> {
     let scenario = simulation.scenario();
     let (initial, last) = (simulation.beginning().particles, simulation.gas().len() as u64);
     let grains = if initial > 0 { initial } else { last };
-    let volume_fraction = grains as f64 * scenario.grain.volume::<V>() / scenario.size.product();
+    let volume_fraction = grains as f64 * mean_volume(simulation) / scenario.size.product();
     object(json!({
         "scenario": scenario.name,
         "engine": scenario.engine.kind.name(),
@@ -60,6 +61,15 @@ fn what_ran<V: Vector>(simulation: &Simulation<'_, V>) -> Map<String, Value> {
     }))
 }
 
+/// Mean volume (2D: area) of a grain [lengthᴰ].
+fn mean_volume<V: Vector>(simulation: &Simulation<'_, V>) -> f64 {
+    let gas = simulation.gas();
+    if gas.species.is_empty() || gas.is_empty() {
+        return simulation.scenario().grain.volume::<V>();
+    }
+    moments::volume(gas) / gas.len() as f64
+}
+
 fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> Map<String, Value> {
     let (gas, totals) = (simulation.gas(), simulation.totals());
     let end_reason = match ending {
@@ -69,9 +79,9 @@ fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> M
     object(json!({
         "steps": totals.steps,
         "steps_capped": totals.steps_capped,
-        "events": null,
+        "events": simulation.is_event_driven().then_some(totals.events.all),
         "collisions": totals.counts.collisions,
-        "candidates": totals.counts.candidates,
+        "candidates": (!simulation.is_event_driven()).then_some(totals.counts.candidates),
         "cell_collisions": simulation.capacity().map(|_| totals.counts.cell_collisions),
         "rejected_moves": simulation.capacity().map(|_| totals.counts.rejected_moves),
         "cell_capacity": simulation.capacity(),
@@ -89,6 +99,24 @@ fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> M
     }))
 }
 
+/// What an event-driven engine counts beside collisions; null for others.
+fn what_events_were<V: Vector>(simulation: &Simulation<'_, V>) -> Map<String, Value> {
+    let totals = simulation.totals();
+    let events = simulation.is_event_driven().then_some(totals.events);
+    let cured_share = events.and_then(|events| {
+        let contacts = totals.counts.collisions + events.wall_hits;
+        (contacts > 0).then(|| events.cured as f64 / contacts as f64)
+    });
+    object(json!({
+        "wall_hits": events.map(|events| events.wall_hits),
+        "cell_crossings": events.map(|events| events.crossings),
+        "list_renewals": events.map(|events| events.list_renewals),
+        "annulled_events": events.map(|events| events.annulled),
+        "cured_share": cured_share,
+        "invalid_states": simulation.invalid_states(),
+    }))
+}
+
 fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) -> Map<String, Value> {
     let advancing: f64 = watch
         .laps()
@@ -96,11 +124,16 @@ fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) ->
         .filter(|(verb, _)| !NOT_ADVANCING.contains(verb))
         .map(|(_, seconds)| seconds)
         .sum();
-    let rate = simulation.totals().particle_steps as f64 / advancing;
+    let totals = simulation.totals();
+    let per_second = |count: u64| Some(count as f64 / advancing).filter(|rate| rate.is_finite());
+    let (steps, events) = match simulation.is_event_driven() {
+        true => (None, per_second(totals.events.all)),
+        false => (per_second(totals.particle_steps), None),
+    };
     object(json!({
         "wall_seconds": watch.seconds(),
-        "particle_steps_per_second": rate.is_finite().then_some(rate),
-        "events_per_second": null,
+        "particle_steps_per_second": steps,
+        "events_per_second": events,
         "peak_memory_bytes": peak_memory_bytes(),
     }))
 }

@@ -67,6 +67,8 @@ pub const MEASURES: &[&str] = &[
     "heap",
     "centre-of-mass",
     "pressure",
+    "collisions",
+    "impact-parameter",
 ];
 
 /// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the

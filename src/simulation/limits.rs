@@ -1,6 +1,8 @@
 //! When a run ends.
 
 use super::pouring::Pouring;
+use super::schedule::{Due, first_time};
+use crate::engine::Horizon;
 use crate::engine::report::Totals;
 use crate::matter::gas::Gas;
 use crate::scenario::model::{RunLimits, Scenario};
@@ -84,11 +86,7 @@ impl Limits {
     /// How much of the run is done, in [0, 1], by the limit that is nearest.
     pub fn progress<V: Vector>(&self, time: f64, totals: &Totals<V>, pouring: Option<&Pouring<V>>) -> f64 {
         let share = |done: f64, limit: Option<f64>| limit.map_or(0.0, |limit| done / limit);
-        let last_poured = pouring.map_or(0.0, Pouring::last_poured).max(self.pouring_time);
-        let waiting = pouring.is_some_and(|pouring| !pouring.is_done());
-        // A source that is held up moves the end: its share of the run is then not yet done.
-        let rest =
-            self.run.rest.map(|rest| if waiting { last_poured.max(time) + rest } else { last_poured + rest });
+        let rest = self.run.rest.map(|rest| self.end_of_rest(rest, time, pouring));
         let shares = [
             share(time, self.run.time),
             share(totals.steps as f64, self.run.steps.map(|steps| steps as f64)),
@@ -96,5 +94,80 @@ impl Limits {
             share(time, rest),
         ];
         shares.into_iter().fold(0.0, f64::max).min(1.0)
+    }
+
+    /// When a rest of that length will be over, as far as `time` can tell [time].
+    fn end_of_rest<V: Vector>(&self, rest: f64, time: f64, pouring: Option<&Pouring<V>>) -> f64 {
+        let last_poured = self.last_pour(pouring);
+        let waiting = pouring.is_some_and(|pouring| !pouring.is_done());
+        // A source that is held up moves the end: its share of the run is then not yet done.
+        if waiting { last_poured.max(time) + rest } else { last_poured + rest }
+    }
+
+    /// When the last grain was poured, or will be if nothing blocks the source [time].
+    fn last_pour<V: Vector>(&self, pouring: Option<&Pouring<V>>) -> f64 {
+        pouring.map_or(0.0, Pouring::last_poured).max(self.pouring_time)
+    }
+
+    /// Where something that is `due` comes at the latest.
+    pub fn horizon<V: Vector>(
+        &self,
+        due: Due,
+        gas: &Gas<V>,
+        totals: &Totals<V>,
+        pouring: Option<&Pouring<V>>,
+    ) -> Horizon {
+        match due {
+            Due::Never => Horizon::NONE,
+            Due::Time(time) => Horizon { time, ..Horizon::NONE },
+            Due::Progress(place) => {
+                let reach = |limit: f64| {
+                    totals.collisions_until(gas.len(), place * limit, |done| done / limit >= place)
+                };
+                Horizon {
+                    time: self.time_of(place, gas.time(), pouring),
+                    collisions: self.run.collisions_per_particle.map_or(u64::MAX, reach),
+                }
+            }
+        }
+    }
+
+    /// Where the run ends at the latest.
+    pub fn end<V: Vector>(&self, gas: &Gas<V>, totals: &Totals<V>, pouring: Option<&Pouring<V>>) -> Horizon {
+        let rested = self.run.rest.filter(|_| pouring.is_none_or(Pouring::is_done));
+        let end_of_rest = rested.map(|rest| pouring.map_or(0.0, Pouring::last_poured) + rest);
+        let reach = |limit: f64| totals.collisions_until(gas.len(), limit, |done| done >= limit);
+        Horizon {
+            time: self.run.time.unwrap_or(f64::INFINITY).min(end_of_rest.unwrap_or(f64::INFINITY)),
+            collisions: self.run.collisions_per_particle.map_or(u64::MAX, reach),
+        }
+    }
+
+    /// When time alone brings the progress to `place` [time].
+    fn time_of<V: Vector>(&self, place: f64, now: f64, pouring: Option<&Pouring<V>>) -> f64 {
+        let reach = |limit: f64| first_time(place * limit, |time| time / limit >= place);
+        let by_time = self.run.time.map_or(f64::INFINITY, reach);
+        let by_rest = self.run.rest.map_or(f64::INFINITY, |rest| {
+            if pouring.is_none_or(Pouring::is_done) {
+                return reach(self.end_of_rest(rest, now, pouring));
+            }
+            let waiting = self.time_while_waiting(place, rest, pouring);
+            // The grain that comes now may be the last one, and from then on the end is known.
+            let poured = reach(self.end_of_rest(rest, now, pouring));
+            let comes_now = pouring.is_some_and(|pouring| pouring.next_time() <= Some(now));
+            if comes_now && poured > now { poured.min(waiting) } else { waiting }
+        });
+        by_time.min(by_rest)
+    }
+
+    /// When the progress by rest comes to `place` if the source waits until then [time].
+    fn time_while_waiting<V: Vector>(&self, place: f64, rest: f64, pouring: Option<&Pouring<V>>) -> f64 {
+        let last_pour = self.last_pour(pouring);
+        let estimate = match place * (last_pour + rest) {
+            planned if planned <= last_pour => planned,
+            _ if place < 1.0 => last_pour.max(place * rest / (1.0 - place)),
+            _ => f64::INFINITY,
+        };
+        first_time(estimate, |time| time / self.end_of_rest(rest, time, pouring) >= place)
     }
 }

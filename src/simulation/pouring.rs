@@ -1,5 +1,6 @@
 //! The pouring source at work.
 
+use crate::engine::Engine;
 use crate::law::source::Source;
 use crate::matter::gas::Gas;
 use crate::random::{Phase, Streams};
@@ -27,6 +28,30 @@ pub enum PouringError {
     },
 }
 
+/// Time after which a grain that overlapped another one is tried again, in times between two grains.
+const RETRY: f64 = 0.05;
+
+/// Where a new grain finds room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// Everywhere.
+    Everywhere,
+    /// In cells of fewer grains than this.
+    Cells(u32),
+    /// Where it overlaps no other grain.
+    Gaps,
+}
+
+impl Room {
+    /// Where `engine` has room.
+    pub fn of<V: Vector>(engine: &dyn Engine<V>, gas: &Gas<V>) -> Self {
+        if engine.excludes_overlap() {
+            return Room::Gaps;
+        }
+        engine.capacity(gas).map_or(Room::Everywhere, Room::Cells)
+    }
+}
+
 /// A source and what it has poured so far.
 #[derive(Clone, Debug)]
 pub struct Pouring<V> {
@@ -37,6 +62,8 @@ pub struct Pouring<V> {
     up: f64,
     poured: u32,
     last_poured: f64,
+    /// No grain comes before [time].
+    held_until: f64,
 }
 
 impl<V: Vector> Pouring<V> {
@@ -47,12 +74,20 @@ impl<V: Vector> Pouring<V> {
             .max_by(|&a, &b| gravity[a].abs().total_cmp(&gravity[b].abs()))
             .expect("a space has axes");
         let up = if gravity[axis] < 0.0 { 1.0 } else { -1.0 };
-        Pouring { source, streams: Streams::new(scenario.seed), axis, up, poured: 0, last_poured: -1.0 }
+        Pouring {
+            source,
+            streams: Streams::new(scenario.seed),
+            axis,
+            up,
+            poured: 0,
+            last_poured: -1.0,
+            held_until: 0.0,
+        }
     }
 
-    /// Goes on after `poured` grains, the last of them at `last_poured`.
-    pub fn restore(&mut self, poured: u64, last_poured: f64) {
-        (self.poured, self.last_poured) = (poured as u32, last_poured);
+    /// Goes on after `poured` grains, the last of them at `last_poured`; none comes before `held_until`.
+    pub fn restore(&mut self, poured: u64, last_poured: f64, held_until: f64) {
+        (self.poured, self.last_poured, self.held_until) = (poured as u32, last_poured, held_until);
     }
 
     /// Whether all grains are poured.
@@ -65,14 +100,29 @@ impl<V: Vector> Pouring<V> {
         self.last_poured
     }
 
-    /// Adds the grains that are due; one whose cell is full waits. Returns how many came.
-    pub fn pour(&mut self, gas: &mut Gas<V>, capacity: Option<u32>) -> Result<u64, PouringError> {
+    /// Until when the source is held up by grains in its way [time]; 0 where it never was.
+    pub fn held_until(&self) -> f64 {
+        self.held_until
+    }
+
+    /// When the next grain is due, or is tried again [time].
+    pub fn next_time(&self) -> Option<f64> {
+        let nominal = f64::from(self.poured) / self.source.rate;
+        (!self.is_done()).then(|| nominal.max(self.held_until))
+    }
+
+    /// Adds the grains that are due; one that finds no room waits. Returns how many came.
+    pub fn pour(&mut self, gas: &mut Gas<V>, room: Room) -> Result<u64, PouringError> {
         let mut came = 0;
-        while !self.is_done() && gas.time() >= f64::from(self.poured) / self.source.rate {
+        while self.next_time().is_some_and(|due| gas.time() >= due) {
             let position = self.spout(gas)?;
-            let cell = gas.grid().cell_of(position);
-            if capacity.is_some_and(|capacity| gas.occupancy(cell) >= capacity) {
-                break;
+            match room {
+                Room::Cells(capacity) if gas.occupancy(gas.grid().cell_of(position)) >= capacity => break,
+                Room::Gaps if overlaps(gas, position) => {
+                    self.held_until = (gas.time() + RETRY / self.source.rate).max(gas.time().next_up());
+                    break;
+                }
+                Room::Everywhere | Room::Cells(_) | Room::Gaps => {}
             }
             gas.insert(position, self.source.velocity);
             self.poured += 1;
@@ -103,15 +153,18 @@ impl<V: Vector> Pouring<V> {
     /// Height above the ground of the upper side of the highest place that is full: a place is a cube
     /// two diameters wide, full at random close packing. 0 while none is full.
     fn top_of_full_places(&self, gas: &Gas<V>) -> f64 {
-        let width = PLACE_WIDTH * gas.grain.diameter;
+        let width =
+            PLACE_WIDTH * gas.species.iter().fold(gas.grain.diameter, |d, grain| d.max(grain.diameter));
         let grid = gas.grid();
         let places: Vec<usize> =
             (0..V::DIMENSION).map(|a| (grid.size()[a] / width).ceil().max(1.0) as usize).collect();
-        let full =
-            (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / gas.grain.volume::<V>()) as u16;
-        let mut counts = vec![0_u16; places.iter().product()];
+        let volume = gas.grain.volume::<V>();
+        let full = (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / volume).floor();
+        let is_mixture = !gas.species.is_empty();
+        // Grains in each place, counted by their volumes where those differ.
+        let mut counts = vec![0.0; places.iter().product()];
         let mut top = 0;
-        for &position in gas.positions() {
+        for (row, &position) in gas.positions().iter().enumerate() {
             let (mut place, mut level) = (0, 0);
             for axis in (0..V::DIMENSION).rev() {
                 let upwards = axis != self.axis || self.up > 0.0;
@@ -124,11 +177,19 @@ impl<V: Vector> Pouring<V> {
                 place = place * places[axis] + k;
                 level = if axis == self.axis { k + 1 } else { level };
             }
-            counts[place] += 1;
+            counts[place] += if is_mixture { gas.grain_at(row).volume::<V>() / volume } else { 1.0 };
             if counts[place] >= full {
                 top = top.max(level);
             }
         }
         top as f64 * width
     }
+}
+
+/// Whether a grain of the first species at `position` would overlap another one.
+fn overlaps<V: Vector>(gas: &Gas<V>, position: V) -> bool {
+    gas.positions().iter().enumerate().any(|(row, &other)| {
+        let contact = 0.5 * (gas.grain.diameter + gas.grain_at(row).diameter);
+        gas.grid().separation(position, other).length_squared() < contact * contact
+    })
 }

@@ -1,5 +1,5 @@
 //! When something is due. A step is never shortened: what is due happens at the first
-//! step end at or after its nominal time.
+//! step end at or after its nominal time. An engine without steps stops at nominal times.
 
 /// Places spread over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,23 +16,44 @@ pub enum Spread {
     Start,
 }
 
+/// What something waits for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Due {
+    /// Progress of the run, in [0, 1].
+    Progress(f64),
+    /// Simulated time [time].
+    Time(f64),
+    /// Nothing: it has happened.
+    Never,
+}
+
 /// Decades of progress that a logarithmic spread covers.
 const DECADES: f64 = 3.0;
 
 impl Spread {
-    /// Whether number `done` (0 for the first) is due at `time` and `progress`.
-    pub fn is_due(self, done: u64, time: f64, progress: f64) -> bool {
+    /// What number `done` (0 for the first) waits for.
+    pub fn due(self, done: u64) -> Due {
         let k = done as f64;
         match self {
-            Spread::Even(number) => done <= u64::from(number) && progress >= k / f64::from(number.max(1)),
-            Spread::Logarithmic(number) => {
-                done == 0 || done <= u64::from(number) && progress >= logarithmic_place(done, number)
+            Spread::Even(number) if done <= u64::from(number) => Due::Progress(k / f64::from(number.max(1))),
+            Spread::Logarithmic(_) | Spread::Start if done == 0 => Due::Progress(0.0),
+            Spread::Logarithmic(number) if done <= u64::from(number) => {
+                Due::Progress(logarithmic_place(done, number))
             }
-            Spread::Every(interval) => time >= k * interval,
-            Spread::Inside(number) => {
-                done < u64::from(number) && progress >= (k + 1.0) / (f64::from(number) + 1.0)
+            Spread::Every(interval) => Due::Time(k * interval),
+            Spread::Inside(number) if done < u64::from(number) => {
+                Due::Progress((k + 1.0) / (f64::from(number) + 1.0))
             }
-            Spread::Start => done == 0,
+            Spread::Even(_) | Spread::Logarithmic(_) | Spread::Inside(_) | Spread::Start => Due::Never,
+        }
+    }
+
+    /// Whether number `done` (0 for the first) is due at `time` and `progress`.
+    pub fn is_due(self, done: u64, time: f64, progress: f64) -> bool {
+        match self.due(done) {
+            Due::Progress(place) => progress >= place,
+            Due::Time(nominal) => time >= nominal,
+            Due::Never => false,
         }
     }
 
@@ -58,6 +79,18 @@ fn logarithmic_place(k: u64, number: u32) -> f64 {
     if share >= 1.0 { 1.0 } else { libm::exp(std::f64::consts::LN_10 * DECADES * (share - 1.0)) }
 }
 
+/// A time near `estimate` at which `is_reached` holds: `estimate` itself where it does, else the next that
+/// was found; `is_reached` has to hold from some time on [time].
+pub fn first_time(estimate: f64, is_reached: impl Fn(f64) -> bool) -> f64 {
+    let mut time = estimate;
+    let mut stride = estimate.abs().next_up() - estimate.abs();
+    while time.is_finite() && !is_reached(time) {
+        time = (time + stride).max(time.next_up());
+        stride *= 2.0;
+    }
+    time
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,6 +101,24 @@ mod tests {
         let due = |progress| (0..10).take_while(|&k| spread.is_due(k, 0.0, progress)).count();
         assert_eq!((due(0.0), due(0.2), due(0.25), due(1.0)), (1, 1, 2, 5));
         assert_eq!((spread.next(0.0, 0.0), spread.next(0.0, 0.6), spread.next(0.0, 1.0)), (1, 3, 5));
+    }
+
+    #[test]
+    fn a_place_is_really_reached_at_its_time() {
+        for number in [3, 7, 10, 400, 997] {
+            for limit in [0.1, 0.3, 1.0, 7.7, 1e-9, 12345.6] {
+                for k in 1..=number {
+                    let place = f64::from(k) / f64::from(number);
+                    let time = first_time(place * limit, |time| time / limit >= place);
+                    assert!(Spread::Even(number).is_due(u64::from(k), time, time / limit));
+                    assert!((time - place * limit).abs() <= 4.0 * f64::EPSILON * time);
+                }
+            }
+        }
+        // Where progress is flat, many times round to the same progress.
+        let place = 1.0 - 1e-9;
+        let time = first_time(place / (1.0 - place), |time| time / (time + 1.0) >= place);
+        assert!((time * 1e-9 - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use grainflow::engine::stochastic::laws::{DenseGas, Laws};
 use grainflow::engine::stochastic::rules::{
     Admission, DisplacementRule, EnskogFactor, HsmcRules, TimeStep, Transfer,
 };
-use grainflow::engine::{Engine, NoLaps};
+use grainflow::engine::{Engine, Horizon, NoLaps};
 use grainflow::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
 use grainflow::law::restitution::Constant;
 use grainflow::matter::gas::Gas;
@@ -177,7 +177,8 @@ impl<V: Vector> Bed<V> {
     /// One step.
     pub(crate) fn step(&mut self) -> StepReport<V> {
         let grains = self.gas.len();
-        let report = self.engine.step(&mut self.gas, &mut NoLaps).expect("a gas can always step");
+        let report =
+            self.engine.step(&mut self.gas, Horizon::NONE, &mut NoLaps).expect("a gas can always step");
         self.totals.add(&report, grains);
         report
     }

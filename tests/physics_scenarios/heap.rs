@@ -1,12 +1,12 @@
 //! Heaps (Müller 2001, sections 2.4 and 3.5): they stand without static friction, and they rest.
 
 use glam::DVec2;
-use grainflow::engine::{Engine, NoLaps};
+use grainflow::engine::{Engine, Horizon, NoLaps};
 use grainflow::matter::gas::Gas;
 use grainflow::observe::moments::kinetic_energy;
 use grainflow::scenario::model::Scenario;
 use grainflow::simulation::assembly;
-use grainflow::simulation::pouring::Pouring;
+use grainflow::simulation::pouring::{Pouring, Room};
 use grainflow::statistics::mean;
 
 use super::trial::{advance_until, figures, for_each, run, scenario, start};
@@ -146,11 +146,11 @@ fn end_with(scenario: &Scenario<DVec2>, interfere: Interference) -> (f64, f64) {
     let end = f64::from(source.count) / source.rate + 100.0;
     let mut pouring = Pouring::new(source, scenario);
     while gas.time() < end {
-        let capacity = engine.capacity(&gas);
-        pouring.pour(&mut gas, capacity).unwrap();
+        let room = Room::of(&*engine, &gas);
+        pouring.pour(&mut gas, room).unwrap();
         let mut before = vec![DVec2::NAN; gas.next_id() as usize];
         gas.ids().iter().zip(gas.positions()).for_each(|(&id, &place)| before[id as usize] = place);
-        let report = engine.step(&mut gas, &mut NoLaps).unwrap();
+        let report = engine.step(&mut gas, Horizon::NONE, &mut NoLaps).unwrap();
         interfere(&mut gas, &before, scenario.gravity * report.duration);
         engine.forget_pace();
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
-use grainflow::engine::NoLaps;
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::matter::gas::Gas;
 use grainflow::matter::state_hash::rows_by_identity;
 use grainflow::scenario::model::Scenario;
@@ -125,7 +125,7 @@ fn the_stress_is_that_of_enskog_theory() {
 fn state_after_steps(scenario: &Scenario<DVec2>) -> Vec<(DVec2, DVec2)> {
     let mut simulation = start(scenario);
     for _ in 0..300 {
-        simulation.advance(&mut NoLaps).unwrap();
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
     let gas: &Gas<DVec2> = simulation.gas();
     rows_by_identity(gas).map(|row| (gas.positions()[row], gas.velocities()[row])).collect()

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
-use grainflow::engine::NoLaps;
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::scenario::model::{AnyScenario, Scenario};
 use grainflow::scenario::{Overrides, initial, load};
 use grainflow::simulation::Simulation;
@@ -52,7 +52,7 @@ pub(crate) fn advance_until<V: Vector>(
     mut stop: impl FnMut(&Simulation<'_, V>) -> bool,
 ) {
     while simulation.end_reason().is_none() && !stop(simulation) {
-        simulation.advance(&mut NoLaps).unwrap();
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
 }
 

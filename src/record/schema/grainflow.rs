@@ -67,6 +67,34 @@ message! {
         wall_momentum: Vec<f64> = 11 [double, repeated],
         /// Σ p·s [mass·length²/time].
         carried_momentum: Option<f64> = 12 [double, optional],
+        /// Events, of engines that have them.
+        events: Option<Events> = 13 [message, optional] ".grainflow.Events",
+        /// Grains since their number last changed.
+        since_grains: u64 = 14 [uint64],
+        /// Collisions up to then.
+        since_collisions: u64 = 15 [uint64],
+        /// Collisions per particle up to then.
+        since_collisions_per_particle: Option<f64> = 16 [double, optional],
+    }
+}
+
+message! {
+    /// What the events of an event-driven engine were.
+    "grainflow" "grainflow/Events.proto" Events {
+        /// Events of every kind.
+        all: u64 = 1 [uint64],
+        /// Hits on walls.
+        wall_hits: u64 = 2 [uint64],
+        /// Crossings from cell to cell.
+        crossings: u64 = 3 [uint64],
+        /// Renewals of neighbour lists.
+        list_renewals: u64 = 4 [uint64],
+        /// Collisions called off because the partner had met another grain before.
+        annulled: u64 = 5 [uint64],
+        /// Collisions, of pairs and with walls, that a cure of inelastic collapse has changed.
+        cured: u64 = 6 [uint64],
+        /// Collisions of pairs in equal bins of the impact parameter |b|/d, 0 … 1.
+        impacts: Vec<u64> = 7 [uint64, repeated],
     }
 }
 
@@ -136,5 +164,11 @@ message! {
         beginning: Option<Beginning> = 18 [message, optional] ".grainflow.Beginning",
         /// States saved before this one.
         states: u64 = 19 [uint64],
+        /// Until when the source is held up by grains in its way [time].
+        held_until: Option<f64> = 20 [double, optional],
+        /// Share of this part in what an event-driven engine holds, as float64, little-endian.
+        engine_numbers: Vec<u8> = 21 [bytes = "vec"],
+        /// The same, as uint32, little-endian.
+        engine_words: Vec<u8> = 22 [bytes = "vec"],
     }
 }

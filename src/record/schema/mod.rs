@@ -145,6 +145,7 @@ pub(crate) const ALL: &[MessageTable] = &[
     grainflow::Profile::TABLE,
     grainflow::Engine::TABLE,
     grainflow::Totals::TABLE,
+    grainflow::Events::TABLE,
     grainflow::Memory::TABLE,
     grainflow::Beginning::TABLE,
     grainflow::State::TABLE,
