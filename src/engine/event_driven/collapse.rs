@@ -12,7 +12,7 @@ use crate::space::Vector;
 /// [time], `None` for a grain that has not collided yet (TC model, Luding and McNamara 1998; Simić 2017,
 /// section 5.2).
 #[inline]
-pub fn cured_restitution(
+pub(super) fn cured_restitution(
     cure: &Cure,
     restitution: f64,
     normal_speed: f64,
@@ -30,7 +30,7 @@ pub fn cured_restitution(
 ///
 /// `separation` is x₂ − x₁. Momentum and energy stay; angular momentum does not. Returns the momentum that the
 /// turn transfers along k, beside that of the collision [mass·length/time] (Simić 2017, section 5.2).
-pub fn turn_relative_velocity<V: Vector>(
+pub(super) fn turn_relative_velocity<V: Vector>(
     largest_angle: f64,
     pair: &PairOfGrains,
     separation: V,
@@ -54,7 +54,7 @@ pub fn turn_relative_velocity<V: Vector>(
 /// that have collided, at most [`CollapseWatch::GRAINS`] of them: those that have collided last. Only they can take part in
 /// a collapse, since time stands still in one for all the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CollapseWatch {
+pub(super) struct CollapseWatch {
     /// When the window began [time].
     start: f64,
     /// Grains with their counts of collisions before the window; the last to collide comes last.
@@ -63,19 +63,19 @@ pub struct CollapseWatch {
 
 impl CollapseWatch {
     /// So many collisions of one grain in a window are a collapse.
-    pub const COLLISIONS: u32 = 200;
+    pub(super) const COLLISIONS: u32 = 200;
     /// So many grains are remembered.
-    pub const GRAINS: usize = 64;
+    pub(super) const GRAINS: usize = 64;
 
     /// A watch that has seen nothing.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         CollapseWatch { start: f64::NEG_INFINITY, seen: Vec::with_capacity(Self::GRAINS) }
     }
 
     /// Notes that grain `row` collides at time `now`, its own `counter` of collisions being at this number with
     /// this one. Returns the number of its collisions in the window of length `span` [time] if that makes a collapse.
     #[inline]
-    pub fn note(&mut self, row: u32, counter: u32, now: f64, span: f64) -> Option<u32> {
+    pub(super) fn note(&mut self, row: u32, counter: u32, now: f64, span: f64) -> Option<u32> {
         if now - self.start > span {
             self.start = now;
             self.seen.clear();
@@ -96,7 +96,7 @@ impl CollapseWatch {
     }
 
     /// Forgets the window: rows have been renumbered.
-    pub fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         *self = Self::new();
     }
 }

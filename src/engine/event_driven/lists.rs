@@ -137,8 +137,9 @@ impl<V: Vector> Lists<V> {
         span.number += 1;
     }
 
-    /// Entries of the pool that no list uses.
-    pub(super) fn waste(&self) -> usize {
-        self.pool.len() - self.spans.iter().map(|span| span.room as usize).sum::<usize>()
+    /// Whether most of the pool is of no use to any list.
+    pub(super) fn is_wasteful(&self) -> bool {
+        let used: usize = self.spans.iter().map(|span| span.room as usize).sum();
+        self.pool.len() > 2 * used
     }
 }

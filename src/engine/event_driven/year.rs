@@ -7,6 +7,7 @@
 
 use super::body::NONE;
 use super::calendar::Entry;
+use super::lists::Lists;
 use super::world::World;
 use crate::space::Vector;
 
@@ -102,7 +103,8 @@ impl<V: Vector> World<V> {
             self.foresee_all();
             return;
         }
-        if decayed || self.pace.gone > 0 {
+        let wasteful = self.lists.as_ref().is_some_and(Lists::is_wasteful);
+        if decayed || wasteful || self.pace.gone > 0 {
             self.order();
         }
         for (row, plan) in self.plans.iter().enumerate() {
