@@ -49,7 +49,15 @@ impl<V: Vector> Gas<V> {
     /// An empty box at time 0.
     pub fn empty(grid: Grid<V>, grain: Grain) -> Self {
         let offsets = vec![0; grid.number_of_cells() + 1];
-        Gas { grain, species: Vec::new(), clock: Clock::default(), grid, columns: Columns::default(), offsets, next_id: 0 }
+        Gas {
+            grain,
+            species: Vec::new(),
+            clock: Clock::default(),
+            grid,
+            columns: Columns::default(),
+            offsets,
+            next_id: 0,
+        }
     }
 
     /// Grains at `positions` with `velocities` `[grain]`, numbered in the given order, at time 0.

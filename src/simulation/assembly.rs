@@ -54,7 +54,7 @@ fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
 /// What CBA and HSMC add to DSMC.
 fn dense_gas<V: Vector>(scenario: &Scenario<V>) -> Option<DenseGas> {
     let largest_volume_fraction = match scenario.engine.kind {
-        EngineKind::Dsmc => return None,
+        EngineKind::Dsmc | EngineKind::EventDriven => return None,
         EngineKind::Cba => V::LARGEST_LOCAL_FRACTION,
         EngineKind::Hsmc => V::LARGEST_LOCAL_FRACTION_HSMC,
     };
