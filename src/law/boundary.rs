@@ -99,6 +99,15 @@ impl<V: Vector> Boundary<V> {
         })
     }
 
+    /// Which faces are walls at a fixed place: `[axis][side]`, side 0 the lower one.
+    pub fn fixed_walls(&self) -> [[bool; 2]; 3] {
+        let mut fixed = [[false; 2]; 3];
+        for (axis, side, wall) in self.walls() {
+            fixed[axis][side] = !matches!(wall.kind, WallKind::Vibrating { .. });
+        }
+        fixed
+    }
+
     /// The fastest speed at which a wall moves [length/time].
     pub fn largest_wall_speed(&self) -> f64 {
         self.walls().map(|(_, _, wall)| wall.largest_speed()).fold(0.0, f64::max)

@@ -1,9 +1,11 @@
 //! Matter: grains, the box and its cells, and the container that keeps grains in cell order.
 
+pub mod bins;
 pub mod clock;
 pub mod columns;
 pub mod gas;
 pub mod grain;
 pub mod grid;
+pub mod overlaps;
 pub mod sort;
 pub mod state_hash;

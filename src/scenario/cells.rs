@@ -1,6 +1,5 @@
 //! How the box is cut into cells.
 
-use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 use crate::space::Vector;
 
@@ -20,7 +19,10 @@ pub(super) struct CellPlan<V> {
     /// `domain.size`, where the grains start.
     pub(super) size: V,
     pub(super) periodic: [bool; 3],
-    pub(super) grain: Grain,
+    /// Diameter of the largest grain.
+    pub(super) diameter: f64,
+    /// Mean volume of a grain.
+    pub(super) grain_volume: f64,
     /// Grains at the start with those that a source adds.
     pub(super) final_count: u64,
     /// For HSMC ν_max, `None` for the other engines.
@@ -69,10 +71,10 @@ impl<V: Vector> CellPlan<V> {
         if let Some(wish) = self.wish {
             return wish;
         }
-        let grain_volume = self.grain.volume::<V>();
+        let grain_volume = self.grain_volume;
         let root = |volume: f64| volume.powf(1.0 / V::DIMENSION as f64);
         if let Some(maximum) = self.maximum_volume_fraction.filter(|_| self.settling) {
-            return root(4.0 * grain_volume / maximum).max(2.0 * self.grain.diameter);
+            return root(4.0 * grain_volume / maximum).max(2.0 * self.diameter);
         }
         let volume_per_grain = self.size.product() / self.final_count.max(1) as f64;
         let dense = grain_volume / volume_per_grain >= 0.25;
@@ -83,7 +85,7 @@ impl<V: Vector> CellPlan<V> {
     fn check_capacity(&self, cells: [u32; 3]) -> Result<(), String> {
         let Some(maximum) = self.maximum_volume_fraction else { return Ok(()) };
         let grid = Grid::new(self.grid_origin, self.grid_size, &cells, &self.periodic);
-        let diameter = self.grain.diameter;
+        let diameter = self.diameter;
         let sides: Vec<String> = grid.side().components().iter().map(|side| format!("{side:.4}")).collect();
         let cell = sides.join(" × ");
         if grid.shortest_side() < diameter {
@@ -115,7 +117,8 @@ mod tests {
             grid_size: DVec2::splat(size),
             size: DVec2::splat(size),
             periodic: [true; 3],
-            grain: Grain { diameter: 1.0, mass: 1.0 },
+            diameter: 1.0,
+            grain_volume: std::f64::consts::FRAC_PI_4,
             final_count: count.into(),
             maximum_volume_fraction: None,
             settling: false,
@@ -218,7 +221,8 @@ mod tests {
             grid_size: DVec3::splat(20.0),
             size: DVec3::splat(20.0),
             periodic: [false; 3],
-            grain: flat.grain,
+            diameter: 1.0,
+            grain_volume: std::f64::consts::FRAC_PI_6,
             final_count: 5,
             maximum_volume_fraction: Some(0.2),
             settling: true,

@@ -5,7 +5,7 @@ use std::fmt;
 use super::bound::rounded;
 use super::estimate::{self, Estimate};
 use super::initial;
-use super::model::{AnyScenario, EngineKind, Scenario};
+use super::model::{AnyScenario, EngineKind, InitialPositions, Scenario};
 use super::{cost, warnings};
 use crate::law::kinetic_theory::mean_free_path;
 use crate::space::Vector;
@@ -68,9 +68,21 @@ impl Check {
         let fractions = (scenario.volume_fraction(), volume_fraction_of(scenario, all));
         self.add("volume fraction", now_and_then(scenario, rounded(fractions.0), rounded(fractions.1)));
         if scenario.count > 0 {
-            let path = mean_free_path::<V>(scenario.grain, scenario.volume_fraction());
-            let in_diameters = rounded(path / scenario.grain.diameter);
+            let path = mean_free_path::<V>(scenario.mean_grain(), scenario.volume_fraction());
+            let in_diameters = rounded(path / scenario.mean_grain().diameter);
             self.add("mean free path", format!("{} ({in_diameters} diameters)", length(scenario, path)));
+        }
+        for (number, (grain, count)) in
+            scenario.constituents().enumerate().filter(|_| !scenario.species.is_empty())
+        {
+            let (diameter, mass) = (length(scenario, grain.diameter), rounded(grain.mass));
+            let mass = with_unit(mass, &scenario.units.mass, "mass");
+            let value = format!("{count} grains of diameter {diameter} and mass {mass}");
+            self.add(&format!("species {}", number + 1), value);
+        }
+        let hard = scenario.engine.kind.is_event_driven() && scenario.count > 0;
+        if hard && scenario.initial.positions == InitialPositions::Random && !initial::has_room(scenario) {
+            self.add("positions", "compressed: too dense for grains to be put in one by one".to_owned());
         }
     }
 
@@ -91,7 +103,11 @@ impl Check {
         let Some(capacity) = scenario.capacity() else { return };
         self.add("capacity of a cell", format!("{capacity} grains"));
         let above = initial::cells_above_capacity(scenario);
-        let above = above.map_or_else(|| "known when the log is read".to_owned(), |cells| cells.to_string());
+        let unknown = match scenario.initial.positions {
+            InitialPositions::Compressed => "known when the grains have grown",
+            _ => "known when the log is read",
+        };
+        let above = above.map_or_else(|| unknown.to_owned(), |cells| cells.to_string());
         self.add("cells that start above it", above);
     }
 
@@ -108,6 +124,9 @@ impl Check {
                 self.add("Haff time t₀", time(scenario, haff_time));
             }
         }
+        if scenario.engine.kind.is_event_driven() {
+            return;
+        }
         match estimate::first_step(scenario) {
             Some(step) => self.add("first time step", format!("about {}", time(scenario, step))),
             None => self.add("first time step", "set by the first grains that move".to_owned()),
@@ -117,8 +136,12 @@ impl Check {
     fn cost<V: Vector>(&mut self, scenario: &Scenario<V>) {
         self.add("memory", format!("about {}", bytes(cost::memory(scenario))));
         self.add("log", format!("about {} before compression", bytes(cost::log_size(scenario))));
-        let Some(steps) = estimate::steps(scenario) else { return };
-        self.add("expected steps", told(steps, 1.2, count_of));
+        if let Some(collisions) = estimate::collisions(scenario) {
+            self.add("expected collisions", told(collisions, 1.2, count_of));
+        }
+        if let Some(steps) = estimate::steps(scenario) {
+            self.add("expected steps", told(steps, 1.2, count_of));
+        }
         if let Some(seconds) = cost::seconds(scenario) {
             self.add("expected time", format!("{} on one core", told(seconds, 2.0, spoken)));
         }
@@ -155,9 +178,11 @@ fn time<V: Vector>(scenario: &Scenario<V>, value: f64) -> String {
     with_unit(rounded(value), &scenario.units.time, "time")
 }
 
-/// Volume fraction of so many grains.
+/// Volume fraction of so many grains: those of the start, and poured ones.
 pub(super) fn volume_fraction_of<V: Vector>(scenario: &Scenario<V>, grains: f64) -> f64 {
-    grains * scenario.grain.volume::<V>() / scenario.size.product()
+    let poured = grains - f64::from(scenario.count);
+    let volume = f64::from(scenario.count) * scenario.mean_volume() + poured * scenario.grain.volume::<V>();
+    volume / scenario.size.product()
 }
 
 /// Mean number of `grains` in a cell's volume of the domain.

@@ -1,9 +1,9 @@
 //! What the tables of a scenario owe each other.
 
-use super::model::{InitialPositions, InitialVelocities, RunLimits};
+use super::model::{EngineKind, InitialPositions, InitialVelocities, RunLimits};
 use super::reader::Section;
 use super::tables::initial::InitialTable;
-use super::tables::particles::MOST_GRAINS;
+use super::tables::particles::{MOST_GRAINS, ParticlesTable};
 use crate::law::boundary::Boundary;
 use crate::law::source::Source;
 use crate::space::Vector;
@@ -49,6 +49,50 @@ fn room<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
         }
     }
     Some(())
+}
+
+/// The engine has what the grains and the limits ask for.
+pub(super) fn abilities(
+    root: &Section<'_>,
+    kind: EngineKind,
+    particles: &ParticlesTable,
+    run: Option<RunLimits>,
+) -> Option<()> {
+    let mut able = Some(());
+    let mut refuse = |key: &str, message: String| {
+        root.mistake(key, message);
+        able = None;
+    };
+    let (name, having) = (kind.name(), EngineKind::EventDriven.name());
+    if !kind.is_event_driven() {
+        if matches!(particles.roughness, Some(Some(_))) {
+            refuse(
+                "particles.tangential_restitution",
+                format!(
+                    "{name} knows smooth grains only; leave it out, or take an engine that has it: {having}"
+                ),
+            );
+        }
+        if particles.matter.as_ref().is_some_and(|matter| matter.are_species) {
+            refuse(
+                "particles.species",
+                format!(
+                    "{name} knows grains of one kind only; give particles.diameter and particles.mass, or take an \
+                     engine that has species: {having}"
+                ),
+            );
+        }
+    } else if let Some(RunLimits { time: None, steps: Some(_), collisions_per_particle: None, rest: None }) =
+        run
+    {
+        refuse(
+            "run.steps",
+            format!(
+                "{name} has no steps, so it would never end; give run.time or run.collisions_per_particle"
+            ),
+        );
+    }
+    able
 }
 
 /// There are grains, and no more than can be named.

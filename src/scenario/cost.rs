@@ -9,6 +9,11 @@ use crate::space::Vector;
 const CACHED_GRAINS: f64 = 2e5;
 /// Recording one grain: measures, hash, frame, compression [s].
 const RECORDING: f64 = 200e-9;
+/// Collisions that the event-driven engine makes in a second: at least, and at most.
+const FLAT_COLLISIONS: (f64, f64) = (3e5, 5e5);
+const DEEP_COLLISIONS: (f64, f64) = (2e5, 3e5);
+/// What the event-driven engine holds of a grain beside the gas: its events and its cell or list [bytes].
+const EVENTS_OF_A_GRAIN: f64 = 250.0;
 /// A step without grains [s], and what each empty cell adds to it [s].
 const EMPTY_STEP: f64 = 4e-6;
 const EMPTY_CELL: f64 = 1.5e-9;
@@ -36,7 +41,12 @@ pub(super) fn settles<V: Vector>(scenario: &Scenario<V>) -> bool {
 
 /// How long a run lasts in its own time [time].
 fn duration<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    let by_steps = || Some(estimate::steps(scenario)?.least * estimate::first_step(scenario)?);
+    let by_steps = || {
+        if scenario.engine.kind.is_event_driven() {
+            return estimate::time_of_collisions(scenario);
+        }
+        Some(estimate::steps(scenario)?.least * estimate::first_step(scenario)?)
+    };
     let limits = [scenario.run.time, estimate::resting_time(scenario)];
     limits.into_iter().flatten().reduce(f64::min).or_else(by_steps)
 }
@@ -53,8 +63,13 @@ fn mean_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
 /// Seconds of a run on one core, its recordings and its equilibration included. The constants are fitted
 /// to processor times of short single-threaded runs on one machine; another may differ by a factor of two.
 pub(super) fn seconds<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
-    let steps = estimate::steps(scenario)?;
     let recording = recordings(scenario).made * mean_grains(scenario) * RECORDING;
+    if let Some(collisions) = estimate::collisions(scenario) {
+        let (slow, fast) = if V::DIMENSION == 2 { FLAT_COLLISIONS } else { DEEP_COLLISIONS };
+        let (least, most) = (collisions.least / fast + recording, collisions.most / slow + recording);
+        return Some(Estimate { least, most, ..collisions });
+    }
+    let steps = estimate::steps(scenario)?;
     let before = estimate::steps_before_the_start(scenario);
     let cost = |steps: f64| (steps + before) * seconds_per_step(scenario) + recording;
     Some(Estimate { least: cost(steps.least), most: cost(steps.most), ..steps })
@@ -92,7 +107,9 @@ fn grain_bytes<V: Vector>() -> f64 {
 pub(super) fn memory<V: Vector>(scenario: &Scenario<V>) -> f64 {
     let cells = scenario.grid().number_of_cells() as f64;
     let per_cell = if V::DIMENSION == 2 { 24.0 } else { 32.0 };
-    let running = PROGRAM + final_grains(scenario) * (4.0 * grain_bytes::<V>() + 30.0) + cells * per_cell;
+    let events = if scenario.engine.kind.is_event_driven() { EVENTS_OF_A_GRAIN } else { 0.0 };
+    let per_grain = 4.0 * grain_bytes::<V>() + 30.0 + events;
+    let running = PROGRAM + final_grains(scenario) * per_grain + cells * per_cell;
     let reporting = REPORTING_PROGRAM + recordings(scenario).made * mean_points(scenario) * POINT;
     running.max(reporting)
 }

@@ -29,7 +29,9 @@ pub(super) struct Estimate {
 pub(super) fn contact_correlation<V: Vector>(scenario: &Scenario<V>) -> f64 {
     match scenario.engine.kind {
         EngineKind::Dsmc => 1.0,
-        EngineKind::Cba | EngineKind::Hsmc => V::contact_correlation(scenario.volume_fraction()),
+        EngineKind::Cba | EngineKind::Hsmc | EngineKind::EventDriven => {
+            V::contact_correlation(scenario.volume_fraction())
+        }
     }
 }
 
@@ -39,7 +41,7 @@ pub(super) fn rates<V: Vector>(scenario: &Scenario<V>) -> Option<Rates> {
         return None;
     }
     let (nu, correlation) = (scenario.volume_fraction(), contact_correlation(scenario));
-    let collision_frequency = collision_frequency::<V>(scenario.grain, nu, temperature, correlation);
+    let collision_frequency = collision_frequency::<V>(scenario.mean_grain(), nu, temperature, correlation);
     let restitution = scenario.restitution.typical();
     let haff_time = (restitution < 1.0).then(|| haff_time::<V>(restitution, collision_frequency));
     Some(Rates { collision_frequency, haff_time })
@@ -65,8 +67,33 @@ fn step_at<V: Vector>(scenario: &Scenario<V>, speed: f64) -> Option<f64> {
     [chosen, Some(longest)].into_iter().flatten().reduce(f64::min).filter(|step| step.is_finite())
 }
 
-/// Steps until the first limit: with the speeds of the start, and with those that gravity gives.
+/// Collisions of an event-driven run until its first limit, those of its equilibration included; `None` for
+/// engines with steps, and where grains begin at rest.
+pub(super) fn collisions<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
+    let rates = rates(scenario).filter(|_| scenario.engine.kind.is_event_driven())?;
+    let RunLimits { time, collisions_per_particle, .. } = scenario.run;
+    let by_time = time.or(resting_time(scenario)).map(|time| match cools(scenario) {
+        true => collisions_until(scenario, time, rates),
+        false => time * rates.collision_frequency,
+    });
+    let per_particle = [by_time, collisions_per_particle].into_iter().flatten().reduce(f64::min)?;
+    let number = 0.5 * f64::from(scenario.count) * (per_particle + scenario.initial.equilibrate);
+    // What drives a gas changes how often grains collide; the number asked for is met all the same.
+    let open = by_time.is_some() && !cools(scenario);
+    Some(Estimate { least: number, most: number, open })
+}
+
+/// How long a run of so many collisions per particle lasts, by the rates of the start [time].
+pub(super) fn time_of_collisions<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+    let (limit, rates) = (scenario.run.collisions_per_particle?, rates(scenario)?);
+    Some(if cools(scenario) { time_until(scenario, limit, rates) } else { limit / rates.collision_frequency })
+}
+
+/// Steps until the first limit, `None` for an engine without steps: with the speeds of the start, and with those that gravity gives.
 pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
+    if scenario.engine.kind.is_event_driven() {
+        return None;
+    }
     let at_start = steps_at(scenario, starting_speed(scenario))?;
     if scenario.gravity == V::ZERO || matches!(scenario.engine.time_step, TimeStep::Fixed(_)) {
         return Some(Estimate { least: at_start, most: at_start, open: false });

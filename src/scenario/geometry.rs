@@ -1,6 +1,7 @@
 //! What follows from a scenario alone.
 
 use super::model::{AnyScenario, EngineKind, Scenario};
+use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 use crate::observe::setting::Setting;
 use crate::space::Vector;
@@ -27,9 +28,48 @@ impl<V: Vector> Scenario<V> {
         }
     }
 
-    /// The true volume fraction at the start, N V_p over the volume of `domain.size`.
+    /// The true volume fraction at the start, N V_p over the volume of `domain.size`; V_p is the mean over
+    /// the species where there are several.
     pub fn volume_fraction(&self) -> f64 {
-        f64::from(self.count) * self.grain.volume::<V>() / self.size.product()
+        f64::from(self.count) * self.mean_volume() / self.size.product()
+    }
+
+    /// Species with their numbers at the start; one where all grains are alike.
+    pub fn constituents(&self) -> impl Iterator<Item = (Grain, u32)> + '_ {
+        let alike = self.species.is_empty().then_some((self.grain, self.count));
+        alike.into_iter().chain(self.species.iter().copied().zip(self.species_counts.iter().copied()))
+    }
+
+    /// Mean volume (2D: area) of a grain at the start [lengthᴰ].
+    pub fn mean_volume(&self) -> f64 {
+        self.mean(|grain| grain.volume::<V>())
+    }
+
+    /// Mean mass of a grain at the start [mass].
+    pub fn mean_mass(&self) -> f64 {
+        self.mean(|grain| grain.mass)
+    }
+
+    /// A grain of mean volume and mean mass: for estimates, not for contacts.
+    pub fn mean_grain(&self) -> Grain {
+        if self.species.is_empty() {
+            return self.grain;
+        }
+        let diameter = (self.mean_volume() / V::UNIT_SPHERE_VOLUME).powf(1.0 / V::DIMENSION as f64);
+        Grain { diameter, mass: self.mean_mass() }
+    }
+
+    /// Diameter of the largest grain [length].
+    pub fn largest_diameter(&self) -> f64 {
+        self.constituents().map(|(grain, _)| grain.diameter).fold(0.0, f64::max)
+    }
+
+    fn mean(&self, quantity: impl Fn(Grain) -> f64) -> f64 {
+        if self.species.is_empty() || self.count == 0 {
+            return quantity(self.grain);
+        }
+        let sum: f64 = self.constituents().map(|(grain, count)| f64::from(count) * quantity(grain)).sum();
+        sum / f64::from(self.count)
     }
 
     /// Grains that fit into one cell; `None` for engines without excluded volume.

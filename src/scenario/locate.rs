@@ -1,6 +1,6 @@
 //! Where a key stands: a line of the file as the user wrote it, or an option of the command line.
 
-use toml_edit::{Document, Item};
+use toml_edit::{Document, Item, TableLike};
 
 use super::error::Place;
 use super::path::KeyPath;
@@ -48,12 +48,12 @@ impl Locator {
 
     /// The line on which the key at `names` was written.
     fn line(&self, names: &[String]) -> Option<usize> {
-        let mut item = self.document.as_item();
+        let mut place = Node::Item(self.document.as_item());
         let mut start = None;
         for name in names {
-            let (key_start, next) = step(item, name)?;
-            start = key_start.or_else(|| next.span().map(|span| span.start)).or(start);
-            item = next;
+            let (next_start, next) = step(place, name)?;
+            start = next_start.or(start);
+            place = next;
         }
         let text = self.document.raw().as_bytes();
         start.map(|start| line_of(text, start))
@@ -65,8 +65,33 @@ pub(super) fn line_of(text: &[u8], start: usize) -> usize {
     1 + text[..start.min(text.len())].iter().filter(|&&byte| byte == b'\n').count()
 }
 
-/// The item called `name` inside `item`, and where its key begins.
-fn step<'a>(item: &'a Item, name: &str) -> Option<(Option<usize>, &'a Item)> {
-    let (key, next) = item.as_table_like()?.get_key_value(name)?;
-    Some((key.span().map(|span| span.start), next))
+/// A place in the tree.
+#[derive(Clone, Copy)]
+enum Node<'a> {
+    Item(&'a Item),
+    /// An element of a list of tables.
+    Table(&'a dyn TableLike),
+}
+
+/// What is called `name` inside `node`, and where it begins: a key, or an element `[n]` of a list of tables.
+fn step<'a>(node: Node<'a>, name: &str) -> Option<(Option<usize>, Node<'a>)> {
+    let table = match node {
+        Node::Table(table) => table,
+        Node::Item(item) => match name.strip_prefix('[') {
+            Some(rest) => return element(item, rest.strip_suffix(']')?.parse().ok()?),
+            None => item.as_table_like()?,
+        },
+    };
+    let (key, next) = table.get_key_value(name)?;
+    let start = key.span().or_else(|| next.span()).map(|span| span.start);
+    Some((start, Node::Item(next)))
+}
+
+/// Table `index` of a list of tables, and where it begins.
+fn element(item: &Item, index: usize) -> Option<(Option<usize>, Node<'_>)> {
+    if let Some(table) = item.as_array_of_tables().and_then(|list| list.get(index)) {
+        return Some((table.span().map(|span| span.start), Node::Table(table)));
+    }
+    let table = item.as_array()?.get(index)?.as_inline_table()?;
+    Some((table.span().map(|span| span.start), Node::Table(table)))
 }

@@ -5,6 +5,7 @@ mod bound;
 pub mod builtin;
 mod cells;
 pub mod check;
+mod collapse;
 mod consistency;
 mod cost;
 pub mod error;

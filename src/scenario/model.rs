@@ -2,11 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
+pub use crate::engine::event_driven::rules::{Cure, EventDrivenRules, Structure};
 pub use crate::engine::stochastic::rules::{
     Admission, DisplacementRule, EnskogFactor, HsmcRules, TimeStep, Transfer,
 };
 use crate::law::boundary::Boundary;
 use crate::law::restitution::RestitutionLaw;
+use crate::law::roughness::Roughness;
 use crate::law::source::Source;
 use crate::matter::grain::Grain;
 
@@ -45,8 +47,15 @@ pub struct Scenario<V> {
     pub cells: [u32; 3],
     /// The sides of the box.
     pub boundary: Boundary<V>,
-    /// Diameter and mass of a grain.
+    /// Diameter and mass of a grain; of the first species where there are several, which is the one that a
+    /// source pours. Means over all grains are asked for by name: [`Scenario::mean_volume`] and its kin.
     pub grain: Grain,
+    /// Diameter and mass of each species `[species]`; empty where all grains are alike.
+    pub species: Vec<Grain>,
+    /// Grains of each species at the start `[species]`; empty where all grains are alike.
+    pub species_counts: Vec<u32>,
+    /// Tangential restitution and moment of inertia; `None` where grains are smooth.
+    pub roughness: Option<Roughness>,
     /// Restitution of grain–grain collisions.
     pub restitution: RestitutionLaw,
     /// Grains at the start.
@@ -76,6 +85,8 @@ pub struct EngineChoice {
     pub transfer: Transfer,
     /// Rules of HSMC.
     pub hsmc: HsmcRules,
+    /// Rules of the event-driven engine.
+    pub event_driven: EventDrivenRules,
 }
 
 /// The engines.
@@ -87,11 +98,14 @@ pub enum EngineKind {
     Cba,
     /// Hybrid simulation Monte Carlo (Müller 2001).
     Hsmc,
+    /// Exact dynamics of hard grains, one collision after another (Lubachevsky 1991).
+    EventDriven,
 }
 
 impl EngineKind {
     /// Every engine.
-    pub const ALL: [EngineKind; 3] = [EngineKind::Dsmc, EngineKind::Cba, EngineKind::Hsmc];
+    pub const ALL: [EngineKind; 4] =
+        [EngineKind::Dsmc, EngineKind::Cba, EngineKind::Hsmc, EngineKind::EventDriven];
 
     /// The name used in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -99,7 +113,13 @@ impl EngineKind {
             EngineKind::Dsmc => "dsmc",
             EngineKind::Cba => "cba",
             EngineKind::Hsmc => "hsmc",
+            EngineKind::EventDriven => "event-driven",
         }
+    }
+
+    /// Whether grains must not overlap at the start, and collide as spheres of their own size.
+    pub fn is_event_driven(self) -> bool {
+        self == EngineKind::EventDriven
     }
 }
 
@@ -119,8 +139,11 @@ pub struct Initial {
 pub enum InitialPositions {
     /// Independent places.
     Random,
-    /// Counts per cell that differ by at most one, random places inside.
+    /// Counts per cell that differ by at most one, random places inside; a regular lattice for the
+    /// event-driven engine.
     Lattice,
+    /// Grown from a dilute gas of small grains until they have their size: dense and without overlap.
+    Compressed,
     /// The last state of a log, with its velocities.
     Log(std::path::PathBuf),
 }

@@ -24,7 +24,7 @@ pub(super) fn starting_speed<V: Vector>(scenario: &Scenario<V>) -> f64 {
 
 /// √⟨v²⟩ = √(D T/m).
 fn thermal_speed<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    (V::DIMENSION as f64 * stated_temperature(scenario) / scenario.grain.mass).sqrt()
+    (V::DIMENSION as f64 * stated_temperature(scenario) / scenario.mean_mass()).sqrt()
 }
 
 /// The largest speed to be expected once grains have fallen freely: through the box where some are
@@ -62,7 +62,7 @@ pub(super) fn longest_step<V: Vector>(scenario: &Scenario<V>, speed: f64) -> f64
 /// Notes a fixed step that is too long from the first step on.
 pub(super) fn check_fixed_step<V: Vector>(root: &Section<'_>, scenario: &Scenario<V>) -> Option<()> {
     let TimeStep::Fixed(step) = scenario.engine.time_step else { return Some(()) };
-    if step <= longest_step(scenario, certain_speed(scenario)) {
+    if scenario.engine.kind.is_event_driven() || step <= longest_step(scenario, certain_speed(scenario)) {
         return Some(());
     }
     let side = scenario.grid().shortest_side();

@@ -5,16 +5,15 @@ use super::consistency::{self, Story};
 use super::model::{
     EngineChoice, EngineKind, HsmcRules, Initial, InitialPositions, InitialVelocities, Scenario,
 };
-use super::pace;
 use super::reader::Section;
 use super::tables::engine::{CellRestitution, EngineTable};
 use super::tables::initial::InitialTable;
-use super::tables::particles::{self, ParticlesTable};
+use super::tables::particles::{self, Matter, ParticlesTable};
 use super::tables::source::Surroundings;
 use super::tables::{boundary, engine, head, initial, record, run, source};
 use super::walls;
+use super::{initial as state, pace};
 use crate::law::restitution::RestitutionLaw;
-use crate::matter::grain::Grain;
 use crate::space::Vector;
 
 /// Reads every table and notes every mistake; `None` when there is one.
@@ -25,7 +24,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     let axes = boundary::read::<V>(root);
     let particles = particles::read::<V>(root);
     let initial = initial::read(root);
-    let diameter = particles.grain.map(|grain| grain.diameter);
+    let diameter = particles.matter.as_ref().map(Matter::largest_diameter);
     let source = source::read(root, Surroundings { gravity: head.gravity, size, diameter });
     let run = run::read(root);
     let record = record::read(root, run);
@@ -34,7 +33,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     let count = count(root, &particles, size);
     let restitution = particles.restitution;
     // An unknown ν or r changes the restitution of walls, not whether they are right.
-    let volume_fraction = volume_fraction(count, particles.grain, size).unwrap_or(0.0);
+    let volume_fraction = volume_fraction(count, &particles, size).unwrap_or(0.0);
     let typical = restitution.map_or(1.0, RestitutionLaw::typical);
     let boundary = walls::resolve(axes, typical, volume_fraction);
     let story = Story {
@@ -47,10 +46,12 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         run,
     };
     let consistent = consistency::check(root, &story);
+    let able = engine.kind.map_or(Some(()), |kind| consistency::abilities(root, kind, &particles, run));
     let initial = resolve_initial(root, initial, &story);
     let grid = cut(root, &engine, &particles, &story);
     let (grid_origin, grid_size, cells) = grid?;
-    consistent?;
+    consistent.and(able)?;
+    let (matter, count) = (particles.matter?, count?);
     let scenario = Scenario {
         name: name.to_owned(),
         title: head.title?,
@@ -63,9 +64,12 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         grid_size,
         cells,
         boundary: boundary?,
-        grain: particles.grain?,
+        grain: *matter.kinds.first()?,
+        species: matter.species(),
+        species_counts: matter.species_counts(count),
+        roughness: particles.roughness?,
         restitution: restitution?,
-        count: count?,
+        count,
         initial: initial?,
         source: source?,
         run: run?,
@@ -73,12 +77,13 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         units: units?,
     };
     pace::check_fixed_step(root, &scenario)?;
+    state::check_lattice(root, &scenario)?;
     Some(scenario)
 }
 
 fn count<V: Vector>(root: &Section<'_>, table: &ParticlesTable, size: Option<V>) -> Option<u32> {
-    let (amount, grain, size) = (table.amount?, table.grain?, size?);
-    match particles::count(amount, grain, size) {
+    let (amount, matter, size) = (table.amount?, table.matter.as_ref()?, size?);
+    match particles::count(amount, matter, size) {
         Ok(count) => Some(count),
         Err(message) => {
             root.mistake(&format!("particles.{}", amount.key()), message);
@@ -87,8 +92,8 @@ fn count<V: Vector>(root: &Section<'_>, table: &ParticlesTable, size: Option<V>)
     }
 }
 
-fn volume_fraction<V: Vector>(count: Option<u32>, grain: Option<Grain>, size: Option<V>) -> Option<f64> {
-    Some(f64::from(count?) * grain?.volume::<V>() / size?.product())
+fn volume_fraction<V: Vector>(count: Option<u32>, table: &ParticlesTable, size: Option<V>) -> Option<f64> {
+    Some(f64::from(count?) * table.matter.as_ref()?.mean_volume::<V>() / size?.product())
 }
 
 /// Origin, size and cells of the grid.
@@ -104,18 +109,23 @@ fn cut<V: Vector>(
         return None;
     }
     let hsmc = engine.kind? == EngineKind::Hsmc;
+    let settling = source.is_some() || story.gravity? != V::ZERO;
+    let matter = particles.matter.as_ref()?;
+    // The cells of an event-driven run serve its measures alone: small ones show a surface.
+    let small = (engine.kind?.is_event_driven() && settling).then(|| 2.0 * matter.largest_diameter());
     let maximum = engine.hsmc.maximum_volume_fraction;
     let (grid_origin, grid_size) = walls::swept_box(boundary, size);
     let plan = CellPlan {
-        wish: engine.cell_size?,
+        wish: engine.cell_size?.or(small),
         grid_origin,
         grid_size,
         size,
         periodic: std::array::from_fn(|axis| boundary.is_periodic(axis)),
-        grain: particles.grain?,
+        diameter: matter.largest_diameter(),
+        grain_volume: matter.mean_volume::<V>(),
         final_count: u64::from(count) + source.map_or(0, |source| u64::from(source.count)),
         maximum_volume_fraction: if hsmc { Some(maximum?) } else { None },
-        settling: source.is_some() || story.gravity? != V::ZERO,
+        settling,
     };
     match plan.cells() {
         Ok(cells) => Some((grid_origin, grid_size, cells)),
@@ -145,6 +155,7 @@ fn resolve_engine(engine: EngineTable, restitution: f64) -> Option<EngineChoice>
             admission: hsmc.admission?,
             displacement: hsmc.displacement?,
         },
+        event_driven: engine.event_driven?,
     })
 }
 

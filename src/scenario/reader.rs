@@ -125,6 +125,28 @@ impl<'a> Section<'a> {
         section
     }
 
+    /// The tables of the list under `key`, each of which may hold `keys`.
+    pub(super) fn tables(&self, key: &str, keys: &[&str]) -> Found<Vec<Section<'a>>> {
+        let tables: Option<Vec<&'a dyn TableLike>> = match self.item(key) {
+            None => return Found::Missing,
+            Some(Item::ArrayOfTables(list)) => Some(list.iter().map(|table| table as _).collect()),
+            Some(item) => item.as_array().and_then(|list| {
+                list.iter().map(|value| value.as_inline_table().map(|table| table as _)).collect()
+            }),
+        };
+        let Some(tables) = tables.filter(|tables| !tables.is_empty()) else {
+            return self
+                .wrong(key, format!("must be a list of tables; write [[{}]] above each", self.at(key)));
+        };
+        let path = self.at(key);
+        let sections = tables.into_iter().enumerate().map(|(index, table)| {
+            let section = Section { reader: self.reader, path: path.element(index), table: Some(table) };
+            section.refuse_unknown(keys);
+            section
+        });
+        Found::Value(sections.collect())
+    }
+
     /// The item under `key`.
     pub(super) fn item(&self, key: &str) -> Option<&'a Item> {
         self.table?.get(key).filter(|item| !item.is_none())

@@ -17,18 +17,34 @@ pub(super) const ROOT: &[&str] = &[
     "units",
 ];
 /// `[engine]`.
-pub(super) const ENGINE: &[&str] = &["kind", "cell_size", "time_step", "enskog_factor", "transfer", "hsmc"];
+pub(super) const ENGINE: &[&str] =
+    &["kind", "cell_size", "time_step", "enskog_factor", "transfer", "hsmc", "event_driven"];
 /// `engine.time_step`.
 pub(super) const TIME_STEP: &[&str] = &["fixed", "collisions_per_particle", "crossing"];
 /// `[engine.hsmc]`.
 pub(super) const HSMC: &[&str] =
     &["maximum_volume_fraction", "cell_restitution", "sweeps", "admission", "displacement"];
+/// `[engine.event_driven]`.
+pub(super) const EVENT_DRIVEN: &[&str] = &["structure", "collapse"];
+/// `engine.event_driven.collapse`, where it is a table.
+pub(super) const COLLAPSE: &[&str] = &["elastic_below", "contact_time", "rotation"];
 /// `[domain]`.
 pub(super) const DOMAIN: &[&str] = &["size"];
 /// `boundary.x` and the like, where it is a table.
 pub(super) const FACES: &[&str] = &["lower", "upper"];
 /// `[particles]`.
-pub(super) const PARTICLES: &[&str] = &["count", "volume_fraction", "diameter", "mass", "restitution"];
+pub(super) const PARTICLES: &[&str] = &[
+    "count",
+    "volume_fraction",
+    "diameter",
+    "mass",
+    "restitution",
+    "tangential_restitution",
+    "moment_of_inertia",
+    "species",
+];
+/// `[[particles.species]]`.
+pub(super) const SPECIES: &[&str] = &["diameter", "mass", "share"];
 /// `particles.restitution`, where it is a table.
 pub(super) const RESTITUTION: &[&str] = &["law", "r0", "v0"];
 /// `[initial]`.
@@ -47,8 +63,11 @@ pub(super) const TABLES: &[(&str, &[&str])] = &[
     ("engine", ENGINE),
     ("engine.time_step", TIME_STEP),
     ("engine.hsmc", HSMC),
+    ("engine.event_driven", EVENT_DRIVEN),
+    ("engine.event_driven.collapse", COLLAPSE),
     ("domain", DOMAIN),
     ("particles", PARTICLES),
+    ("[particles.species]", SPECIES),
     ("initial", INITIAL),
     ("source", SOURCE),
     ("run", RUN),
@@ -78,6 +97,7 @@ pub(super) const WITHOUT_A_LOG: &[&str] = &["velocities", "equilibrate"];
 /// Keys of which a scenario has one; setting one on the command line removes the others.
 pub(super) const EITHER_OR: &[(&str, &[&[&str]])] = &[
     ("particles", &[&["count"], &["volume_fraction"]]),
+    ("particles", &[&["diameter", "mass"], &["species"]]),
     ("record", &[&["frames", "spacing"], &["every"]]),
     ("engine.time_step", &[&["fixed"], &["collisions_per_particle"], &["crossing"]]),
     ("initial.velocities", &[&["maxwell"], &["uniform"]]),

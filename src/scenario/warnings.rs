@@ -4,7 +4,7 @@ use super::bound::{rounded, shown};
 use super::check::{bytes, count_of, grains_per_cell};
 use super::estimate;
 use super::model::{EngineKind, EnskogFactor, Scenario, Spacing, TimeStep};
-use super::{cost, initial, pace};
+use super::{collapse, cost, initial, pace};
 use crate::law::boundary::Face;
 use crate::law::kinetic_theory::mean_free_path;
 use crate::law::restitution::{Constant, RestitutionLaw};
@@ -19,6 +19,7 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, available: Option<u64>
         engine(scenario),
         cells(scenario),
         gravity(scenario),
+        collapse::warning(scenario).into_iter().collect(),
         time_step(scenario),
         recordings(scenario),
         memory(scenario, available),
@@ -32,14 +33,15 @@ fn engine<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let kind = scenario.engine.kind;
     if kind == EngineKind::Dsmc && scenario.volume_fraction() > 0.1 {
         warnings.push(format!(
-            "dsmc treats grains as points: at ν = {} it collides {} times too rarely; cba and hsmc do not",
+            "dsmc treats grains as points: at ν = {} it collides {} times too rarely; cba, hsmc and event-driven do not",
             rounded(scenario.volume_fraction()),
             rounded(V::contact_correlation(scenario.volume_fraction()))
         ));
     }
-    if kind != EngineKind::Hsmc && cost::settles(scenario) {
+    if matches!(kind, EngineKind::Dsmc | EngineKind::Cba) && cost::settles(scenario) {
         warnings.push(format!(
-            "{} has no excluded volume: under gravity grains pile up beyond any possible density; hsmc has one",
+            "{} has no excluded volume: under gravity grains pile up beyond any possible density; hsmc and \
+             event-driven have one",
             kind.name()
         ));
     }
@@ -50,6 +52,10 @@ fn engine<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
 fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let mut warnings = Vec::new();
     let engine = &scenario.engine;
+    // The cells of an event-driven run serve its measures alone.
+    if engine.kind.is_event_driven() {
+        return warnings;
+    }
     let per_cell = grains_per_cell(scenario, f64::from(scenario.count));
     let local = engine.kind != EngineKind::Dsmc && engine.enskog_factor == EnskogFactor::Local;
     let gas = scenario.source.is_none() && scenario.gravity == V::ZERO;
@@ -62,7 +68,7 @@ fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     }
     let driven = scenario.boundary.largest_wall_speed() > 0.0;
     let longest = scenario.grid().side().components().into_iter().fold(0.0, f64::max);
-    let path = mean_free_path::<V>(scenario.grain, scenario.volume_fraction());
+    let path = mean_free_path::<V>(scenario.mean_grain(), scenario.volume_fraction());
     if driven && scenario.count > 0 && longest > 1.1 * path {
         warnings.push(format!(
             "cells of {} are longer than the mean free path {}: they raise the viscosity of a driven flow",
@@ -102,6 +108,9 @@ fn gravity<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
 fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let mut warnings = Vec::new();
     let TimeStep::Fixed(step) = scenario.engine.time_step else { return warnings };
+    if scenario.engine.kind.is_event_driven() {
+        return warnings;
+    }
     let (start, later) = (pace::starting_speed(scenario), pace::falling_speed(scenario));
     let too_long = |speed: f64| step > pace::longest_step(scenario, speed);
     if too_long(later) {

@@ -1,6 +1,8 @@
 //! Puts an engine together from a scenario.
 
 use crate::engine::Engine;
+use crate::engine::event_driven::laws::Growth;
+use crate::engine::event_driven::{self, EventDriven};
 use crate::engine::stochastic::Stochastic;
 use crate::engine::stochastic::laws::{DenseGas, Laws};
 use crate::law::boundary::Boundary;
@@ -19,12 +21,39 @@ pub fn engine<V: Vector>(
     restitution: Option<f64>,
 ) -> Box<dyn Engine<V>> {
     let law = restitution.map_or(scenario.restitution, |r| RestitutionLaw::Constant(Constant(r)));
+    if scenario.engine.kind == EngineKind::EventDriven {
+        return event_driven(scenario, seed, boundary, gravity, law);
+    }
     match law {
         RestitutionLaw::Constant(law) => with_law(scenario, seed, boundary, gravity, law, restitution),
         RestitutionLaw::VelocityDependent(law) => {
             with_law(scenario, seed, boundary, gravity, law, restitution)
         }
     }
+}
+
+fn event_driven<V: Vector>(
+    scenario: &Scenario<V>,
+    seed: u64,
+    boundary: &Boundary<V>,
+    gravity: V,
+    restitution: RestitutionLaw,
+) -> Box<dyn Engine<V>> {
+    let rules = scenario.engine.event_driven;
+    let laws = event_driven::laws::Laws {
+        grain: scenario.grain,
+        species: scenario.species.clone(),
+        restitution,
+        roughness: scenario.roughness,
+        gravity,
+        size: scenario.size,
+        boundary: *boundary,
+        cure: rules.cure,
+        growth: Growth::NONE,
+        streams: Streams::new(seed),
+        seed,
+    };
+    Box::new(EventDriven::new(laws, rules.structure))
 }
 
 fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
@@ -54,7 +83,7 @@ fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
 /// What CBA and HSMC add to DSMC.
 fn dense_gas<V: Vector>(scenario: &Scenario<V>) -> Option<DenseGas> {
     let largest_volume_fraction = match scenario.engine.kind {
-        EngineKind::Dsmc => return None,
+        EngineKind::Dsmc | EngineKind::EventDriven => return None,
         EngineKind::Cba => V::LARGEST_LOCAL_FRACTION,
         EngineKind::Hsmc => V::LARGEST_LOCAL_FRACTION_HSMC,
     };

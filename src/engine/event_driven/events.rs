@@ -26,9 +26,9 @@ impl<V: Vector> World<V> {
         let mut velocities = [one.velocity, other.velocity];
         let separation = self.nearest_image(other.position - one.position);
         let mut meeting = Meeting::of(separation, &velocities);
-        if self.laws.growth != 0.0 {
+        if self.laws.growth.rate != 0.0 {
             // The surfaces approach faster than the centres (Miller 2004, equation 2.17).
-            let growth = self.contact_distance(row, partner) * self.laws.growth;
+            let growth = self.contact_distance(row, partner) * self.laws.growth.rate;
             meeting.approach += growth * meeting.distance_squared.sqrt();
         }
         // A rounding may make a grazing pair pass: the event is evaluated again, now that both stand here.
@@ -161,7 +161,7 @@ impl<V: Vector> World<V> {
         let inward = if face.upper { -1.0 } else { 1.0 };
         let before = self.bodies[row as usize].velocity;
         // The wall moves, and a growing grain meets it sooner.
-        let surface = self.walls.speed(face, self.now) + inward * 0.5 * grain.diameter * self.laws.growth;
+        let surface = self.walls.speed(face, self.now) + inward * 0.5 * grain.diameter * self.laws.growth.rate;
         let normal = before[axis] - surface;
         if inward * normal < 0.0 {
             let wait = self.time_since_collision(row);

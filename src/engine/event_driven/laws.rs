@@ -27,12 +27,26 @@ pub struct Laws<V> {
     pub boundary: Boundary<V>,
     /// What prevents inelastic collapse.
     pub cure: Cure,
-    /// Rate at which all diameters grow, as a share of those above [1/time]; 0 for grains of fixed size.
-    pub growth: f64,
+    /// The size of all grains at the start, and how it grows.
+    pub growth: Growth,
     /// Random numbers.
     pub streams: Streams,
     /// Their seed, to be named in errors.
     pub seed: u64,
+}
+
+/// All diameters as a share of those that the laws state: a(t) = a₀ + u t (Miller 2004, equation 2.16).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// The share at the start, in (0, 1].
+    pub start: f64,
+    /// Its rate [1/time], not negative. The share must not exceed 1 as long as the engine is used.
+    pub rate: f64,
+}
+
+impl Growth {
+    /// Grains of full and constant size.
+    pub const NONE: Growth = Growth { start: 1.0, rate: 0.0 };
 }
 
 impl<V: Vector> Laws<V> {

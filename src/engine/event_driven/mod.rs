@@ -13,6 +13,7 @@ mod collapse;
 pub mod contact;
 mod events;
 mod fetch;
+pub mod growth;
 pub mod laws;
 mod lists;
 mod order;

@@ -112,7 +112,7 @@ impl<V: Vector> World<V> {
     #[inline(always)]
     fn consider(&self, row: u32, other: u32, dx: V, dv: V, scale: f64, best: &mut Contact) {
         let distance = self.contact_distance(row, other);
-        let Some(after) = pair_contact(dx, dv, distance * scale, distance * self.laws.growth) else { return };
+        let Some(after) = pair_contact(dx, dv, distance * scale, distance * self.laws.growth.rate) else { return };
         let time = self.now + after;
         let ids = &self.ids;
         // Between equal times the smaller identity decides, not the order of memory.
@@ -158,7 +158,7 @@ impl<V: Vector> World<V> {
                 velocity: body.velocity[axis],
                 acceleration: self.laws.gravity[axis],
                 radius: 0.5 * grain.diameter * self.scale_now(),
-                growth: 0.5 * grain.diameter * self.laws.growth,
+                growth: 0.5 * grain.diameter * self.laws.growth.rate,
             };
             for (upper, near) in [(false, low[axis] <= zone[0]), (true, high[axis] >= zone[1])] {
                 if !near {

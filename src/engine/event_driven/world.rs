@@ -86,7 +86,7 @@ impl<V: Vector> World<V> {
             laws: laws.clone(),
             origin: Clock::default(),
             now: 0.0,
-            scale: 1.0,
+            scale: laws.growth.start,
             bodies: Vec::new(),
             plans: Vec::new(),
             ids: Vec::new(),
@@ -114,7 +114,7 @@ impl<V: Vector> World<V> {
     /// All diameters at this moment, as a share of those in the laws.
     #[inline(always)]
     pub(super) fn scale_now(&self) -> f64 {
-        self.scale + self.laws.growth * self.now
+        self.scale + self.laws.growth.rate * self.now
     }
 
     /// The distance at which two grains touch, as long as all diameters are those of the laws [length].

@@ -124,7 +124,7 @@ impl<V: Vector> World<V> {
         for last in self.last_collisions.iter_mut().flatten() {
             *last -= end;
         }
-        self.scale += self.laws.growth * end;
+        self.scale += self.laws.growth.rate * end;
         self.origin.advance(end);
         self.walls.set_origin(self.origin);
         self.watch.forget();

@@ -1,7 +1,10 @@
 //! `[engine]`.
 
 use crate::scenario::bound::Bound;
-use crate::scenario::model::{Admission, DisplacementRule, EngineKind, EnskogFactor, TimeStep, Transfer};
+use crate::scenario::model::{
+    Admission, Cure, DisplacementRule, EngineKind, EnskogFactor, EventDrivenRules, Structure, TimeStep,
+    Transfer,
+};
 use crate::scenario::reader::{Section, kind};
 use crate::scenario::schema;
 use crate::space::Vector;
@@ -16,6 +19,7 @@ pub(in crate::scenario) struct EngineTable {
     pub(in crate::scenario) enskog_factor: Option<EnskogFactor>,
     pub(in crate::scenario) transfer: Option<Transfer>,
     pub(in crate::scenario) hsmc: HsmcTable,
+    pub(in crate::scenario) event_driven: Option<EventDrivenRules>,
 }
 
 /// `[engine.hsmc]` as read; `None` for what is wrong.
@@ -40,7 +44,9 @@ pub(in crate::scenario) enum CellRestitution {
 }
 
 /// Engines of the field that this version does not have: no slips of the pen.
-const ELSEWHERE: &[&str] = &["cuba", "esmc", "event-driven", "event_driven", "edmd", "md", "dem", "bd"];
+const ELSEWHERE: &[&str] = &["cuba", "esmc", "md", "dem", "bd"];
+/// Other names of the event-driven engine.
+const EVENT_DRIVEN_NAMES: &[&str] = &["event_driven", "edmd", "ed"];
 
 /// Reads `[engine]`.
 pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>) -> EngineTable {
@@ -52,6 +58,9 @@ pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>) -> EngineTable {
         None
     } else if let Some(name) = named.filter(|name| ELSEWHERE.contains(name)) {
         engine.mistake("kind", format!("\"{name}\" is not available in this version; choose one of {names}"));
+        None
+    } else if let Some(name) = named.filter(|name| EVENT_DRIVEN_NAMES.contains(name)) {
+        engine.mistake("kind", format!("\"{name}\" is not known; did you mean `event-driven`?"));
         None
     } else {
         engine.choice("kind", &kinds).required(&engine, "kind", &format!("choose one of {names}"))
@@ -77,6 +86,7 @@ pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>) -> EngineTable {
             )
             .or(Transfer::MomentumChange),
         hsmc: hsmc::<V>(&engine),
+        event_driven: event_driven(&engine),
     }
 }
 
@@ -138,4 +148,45 @@ fn cell_restitution(hsmc: &Section<'_>) -> Option<CellRestitution> {
         return least.required(&form, "at_least", "write { at_least = 0.9 }").map(CellRestitution::AtLeast);
     }
     hsmc.number(KEY, Bound::SHARE).map(CellRestitution::Number).or(CellRestitution::AsGrains)
+}
+
+fn event_driven(engine: &Section<'_>) -> Option<EventDrivenRules> {
+    let table = engine.section("event_driven", schema::EVENT_DRIVEN);
+    let structure = table
+        .choice(
+            "structure",
+            &[
+                ("automatic", Structure::Automatic),
+                ("cells", Structure::Cells),
+                ("neighbour-lists", Structure::NeighbourLists),
+            ],
+        )
+        .or(Structure::Automatic);
+    let cure = cure(&table);
+    Some(EventDrivenRules { structure: structure?, cure: cure? })
+}
+
+/// Reads `engine.event_driven.collapse`.
+fn cure(event_driven: &Section<'_>) -> Option<Cure> {
+    const KEY: &str = "collapse";
+    const FORMS: &str = "\"none\", or a table of contact_time, elastic_below, rotation or several of them, such as \
+                         { contact_time = 1e-4 }";
+    let Some(item) = event_driven.item(KEY) else { return Some(Cure::default()) };
+    if !item.is_table_like() {
+        if item.as_str() == Some("none") {
+            return Some(Cure::default());
+        }
+        event_driven.mistake(KEY, format!("must be {FORMS}, not {}", kind(item)));
+        return None;
+    }
+    let table = event_driven.section(KEY, schema::COLLAPSE);
+    let rotation = Bound::up_to(90.0, "an angle in degrees, above 0 and at most 90");
+    let elastic_below = table.number("elastic_below", Bound::POSITIVE).optional();
+    let contact_time = table.number("contact_time", Bound::POSITIVE).optional();
+    let rotation = table.number("rotation", rotation).map(f64::to_radians).optional();
+    if item.as_table_like().is_some_and(|table| table.is_empty()) {
+        event_driven.mistake(KEY, format!("names no cure; write {FORMS}"));
+        return None;
+    }
+    Some(Cure { elastic_below: elastic_below?, contact_time: contact_time?, rotation: rotation? })
 }
