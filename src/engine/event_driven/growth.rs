@@ -39,14 +39,15 @@ pub enum GrowthError {
     Engine(#[from] EngineError),
 }
 
-/// Lets the grains of `gas` grow, as an elastic gas without gravity between `boundary`, until they have
-/// `target_diameter` [length].
+/// Lets the grains of `gas` grow, as an elastic gas without gravity in the box of `size` between `boundary`, until
+/// they have `target_diameter` [length].
 ///
 /// `gas.grain.diameter` is the diameter at the start, at which nothing overlaps, and ends as the target; the
 /// diameters of all species are scaled along with it. Centres keep a radius away from walls while it grows.
 /// Positions are then those of a state without overlap; velocities and the clock are of no further meaning.
 pub fn grow<V: Vector>(
     gas: &mut Gas<V>,
+    size: V,
     boundary: &Boundary<V>,
     target_diameter: f64,
     seed: u64,
@@ -61,7 +62,7 @@ pub fn grow<V: Vector>(
         restitution: RestitutionLaw::Constant(Constant(1.0)),
         roughness: None,
         gravity: V::ZERO,
-        size: gas.grid().size(),
+        size,
         boundary: *boundary,
         cure: Cure::default(),
         growth: Growth { start: 1.0 / full, rate: 0.0 },
@@ -132,7 +133,7 @@ mod tests {
         let grid = Grid::new(V::ZERO, V::from_fn(|_| side), &[4; 3], &[true; 3]);
         let grain = Grain { diameter: 0.5, mass: 1.0 };
         let mut gas = Gas::new(grid, grain, (0..number).map(place).collect(), (0..number).map(velocity).collect());
-        let grown = grow(&mut gas, &Boundary::periodic(), 1.0, 3);
+        let grown = grow(&mut gas, V::from_fn(|_| side), &Boundary::periodic(), 1.0, 3);
         (gas, grown)
     }
 
@@ -140,9 +141,9 @@ mod tests {
     fn dense_states_do_not_overlap() {
         let (flat, grown) = dense::<DVec2>(30, 0.8);
         assert_eq!((grown, flat.grain.diameter), (Ok(()), 1.0));
-        assert_eq!(overlaps(&flat, &Boundary::periodic()), 0);
+        assert_eq!(overlaps(&flat, [[false; 2]; 3]), 0);
         let (deep, grown) = dense::<DVec3>(10, 0.6);
         assert_eq!((grown, deep.grain.diameter), (Ok(()), 1.0));
-        assert_eq!(overlaps(&deep, &Boundary::periodic()), 0);
+        assert_eq!(overlaps(&deep, [[false; 2]; 3]), 0);
     }
 }

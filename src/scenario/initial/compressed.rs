@@ -24,7 +24,8 @@ pub(super) fn places<V: Vector>(
     let mut gas = dilute(scenario, species);
     let seed = Streams::new(scenario.seed).derived_seed(Phase::InitialPositions);
     if gas.grain.diameter < scenario.grain.diameter {
-        growth::grow(&mut gas, &scenario.boundary.at_rest(), scenario.grain.diameter, seed)?;
+        let (size, quiet) = (scenario.size, scenario.boundary.at_rest());
+        growth::grow(&mut gas, size, &quiet, scenario.grain.diameter, seed)?;
     }
     let mut places = vec![V::ZERO; gas.len()];
     for (&id, &position) in gas.ids().iter().zip(gas.positions()) {
