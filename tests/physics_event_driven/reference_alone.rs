@@ -78,6 +78,17 @@ fn unequal_grains_meet_aslant() {
 }
 
 #[test]
+fn a_grain_meets_an_image_boxes_away() {
+    // The image at (34, 13) is the first on the way: (4, 3), the nearest to it, is passed at 50/√1325.
+    let mut pair = Reference::periodic([10.0, 10.0], 1.0, 1.0);
+    pair.positions = vec![[5.0, 5.0], [1.0, 2.0]];
+    let length = 1325.0_f64.sqrt();
+    pair.velocities = vec![[0.0, 0.0], [34.0 / length, 13.0 / length]];
+    pair.run_collisions(1);
+    assert_hits(&pair.pair_hits, &[(length - 1.0, 0, 1)]);
+}
+
+#[test]
 fn an_elastic_gas_runs_back_to_where_it_came_from() {
     let mut gas = gas::<2>(4, 1.0);
     let (start, energy) = (gas.positions.clone(), gas.energy());
