@@ -70,6 +70,9 @@ pub trait Vector:
     /// averaged over impact parameters: c = (1 + r)/2 ⟨√(1 − b²)⟩ / ⟨√(r²(1 − b²) + b²)⟩.
     fn displacement_ratio(restitution: f64) -> f64;
 
+    /// ∫ from 0 to `b` over impact parameters in diameters, of 1/(1 − c b²) in 2D and b/(1 − c b²) in 3D.
+    fn impact_integral(c: f64, b: f64) -> f64;
+
     /// Squared length.
     fn length_squared(self) -> f64 {
         self.dot(self)
@@ -112,6 +115,14 @@ impl Vector for DVec2 {
     const MEAN_RELATIVE_SPEED: f64 = 1.772_453_850_905_516;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y"];
 
+    fn impact_integral(c: f64, b: f64) -> f64 {
+        let root = c.abs().sqrt();
+        match c {
+            _ if c.abs() < 1e-7 => b + c * b * b * b / 3.0,
+            _ if c > 0.0 => libm::atanh(root * b) / root,
+            _ => libm::atan(root * b) / root,
+        }
+    }
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec2::new(component(0), component(1))
     }
@@ -169,6 +180,12 @@ impl Vector for DVec3 {
     const MEAN_RELATIVE_SPEED: f64 = 2.256_758_334_191_025;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y", "z"];
 
+    fn impact_integral(c: f64, b: f64) -> f64 {
+        if c.abs() < 1e-7 {
+            return 0.5 * b * b + 0.25 * c * b * b * b * b;
+        }
+        -0.5 * libm::log1p(-c * b * b) / c
+    }
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec3::new(component(0), component(1), component(2))
     }
