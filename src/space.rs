@@ -78,6 +78,8 @@ pub trait Vector:
     /// uniform on the circle in 3D.
     fn across(self, random: &mut Stream) -> Self;
 
+    /// ∫ from 0 to `b` over impact parameters in diameters, of 1/(1 − c b²) in 2D and b/(1 − c b²) in 3D.
+    fn impact_integral(c: f64, b: f64) -> f64;
     /// `spin` + `factor` · `change`.
     #[inline]
     fn add_spin(mut spin: Self::Spin, change: Self::Spin, factor: f64) -> Self::Spin {
@@ -134,6 +136,14 @@ impl Vector for DVec2 {
     const MEAN_RELATIVE_SPEED: f64 = 1.772_453_850_905_516;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y"];
 
+    fn impact_integral(c: f64, b: f64) -> f64 {
+        let root = c.abs().sqrt();
+        match c {
+            _ if c.abs() < 1e-7 => b + c * b * b * b / 3.0,
+            _ if c > 0.0 => libm::atanh(root * b) / root,
+            _ => libm::atan(root * b) / root,
+        }
+    }
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec2::new(component(0), component(1))
     }
@@ -202,6 +212,12 @@ impl Vector for DVec3 {
     const MEAN_RELATIVE_SPEED: f64 = 2.256_758_334_191_025;
     const AXIS_NAMES: &'static [&'static str] = &["x", "y", "z"];
 
+    fn impact_integral(c: f64, b: f64) -> f64 {
+        if c.abs() < 1e-7 {
+            return 0.5 * b * b + 0.25 * c * b * b * b * b;
+        }
+        -0.5 * libm::log1p(-c * b * b) / c
+    }
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec3::new(component(0), component(1), component(2))
     }

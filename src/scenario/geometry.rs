@@ -22,9 +22,8 @@ impl<V: Vector> Scenario<V> {
             boundary: self.boundary,
             grain: self.grain,
             is_poured: self.source.is_some(),
-            // To connect: the scenario's roughness, and whether its engine is the event-driven one.
-            roughness: None,
-            counts_impacts: false,
+            roughness: self.roughness,
+            counts_impacts: self.engine.kind == EngineKind::EventDriven,
         }
     }
 

@@ -11,6 +11,7 @@ use crate::engine::report::Totals;
 use crate::engine::{Engine, EngineError, Horizon, Laps};
 use crate::law::boundary::Boundary;
 use crate::matter::gas::Gas;
+use crate::matter::overlaps::overlaps;
 use crate::observe::measure::{Cadence, Measure, Snapshot};
 use crate::observe::{measures, moments};
 use crate::random::{Phase, Streams};
@@ -74,7 +75,8 @@ impl<'s, V: Vector> Simulation<'s, V> {
 
     /// Goes on from a saved state, to the same bits as if there had been no interruption.
     pub fn resume(scenario: &'s Scenario<V>, mut saved: SavedState<'_, V>) -> Self {
-        let gas = saved.take_gas(scenario.grid(), scenario.grain);
+        let mut gas = saved.take_gas(scenario.grid(), scenario.grain);
+        gas.species.clone_from(&scenario.species);
         let mut simulation = Self::assemble(scenario, gas, saved.beginning);
         simulation.engine.restore(&saved.engine);
         simulation.totals = saved.totals;
@@ -169,23 +171,15 @@ impl<'s, V: Vector> Simulation<'s, V> {
         }
     }
 
-    /// Looks whether grains overlap that must not, and counts the state as invalid if any do.
+    /// Looks for grains that overlap each other or a wall, where the engine forbids it, and counts them.
     pub fn audit(&mut self) {
-        if let Some(overlaps) = self.overlaps() {
-            *self.invalid_states.get_or_insert(0) += u64::from(overlaps > 0);
+        if self.is_event_driven() {
+            let overlaps = overlaps(&self.gas, self.scenario.boundary.fixed_walls());
+            *self.invalid_states.get_or_insert(0) += overlaps;
         }
     }
 
-    /// Pairs of grains, and grains and walls, that overlap; `None` for engines that allow it.
-    fn overlaps(&self) -> Option<u64> {
-        if !self.is_event_driven() {
-            return None;
-        }
-        // TO CONNECT: Some(crate::matter::overlaps::overlaps(&self.gas, &self.scenario.boundary))
-        None
-    }
-
-    /// States with overlaps among those that were audited; `None` where none was.
+    /// Overlaps found by all audits; `None` where the engine allows overlap.
     pub fn invalid_states(&self) -> Option<u64> {
         self.invalid_states
     }

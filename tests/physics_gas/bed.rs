@@ -14,7 +14,7 @@ use grainflow::matter::grain::Grain;
 use grainflow::matter::grid::Grid;
 use grainflow::observe::moments;
 use grainflow::random::{Phase, Stream, Streams};
-use grainflow::scenario::initial::set_temperature;
+use grainflow::scenario::initial::rescale;
 use grainflow::space::Vector;
 
 /// The grain of all tests: unit diameter and mass.
@@ -159,7 +159,7 @@ impl<V: Vector> Bed<V> {
         for velocity in self.gas.velocities_mut() {
             *velocity = V::from_fn(|_| random.gaussian());
         }
-        set_temperature(self.gas.velocities_mut(), GRAIN.mass, 1.0);
+        rescale(&mut self.gas, 1.0);
         self.engine.forget_pace();
     }
 
@@ -168,7 +168,7 @@ impl<V: Vector> Bed<V> {
         let elastic = Plan { walls: plan.walls.map(|_| 1.0), ..plan.with_restitution(1.0) };
         let mut bed = Bed::new(elastic, seed);
         bed.advance_to(collisions_per_particle);
-        set_temperature(bed.gas.velocities_mut(), GRAIN.mass, 1.0);
+        rescale(&mut bed.gas, 1.0);
         bed.gas.clock = Default::default();
         let other_seed = Streams::new(seed).derived_seed(Phase::Equilibration);
         Bed { plan, engine: plan.engine(other_seed), totals: Totals::default(), ..bed }

@@ -138,6 +138,10 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
     fn capacity(&self, _gas: &Gas<V>) -> Option<u32> {
         None
     }
+
+    fn excludes_overlap(&self) -> bool {
+        true
+    }
 }
 
 impl<V: Vector> EventDriven<V> {
