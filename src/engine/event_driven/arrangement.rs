@@ -9,11 +9,13 @@ use super::world::World;
 use crate::space::Vector;
 
 /// Grains in a cell, where grains are too far apart for cells of their own size: in 2D and in 3D.
-const GRAINS_PER_CELL: [f64; 2] = [1.0, 0.7];
+const GRAINS_PER_CELL: [f64; 2] = [0.7, 0.4];
+fn tune(k: usize, default: f64) -> f64 { std::env::var(format!("TUNE{k}")).ok().and_then(|x| x.parse().ok()).unwrap_or(default) }
+
 /// Most cells beside a number for each grain.
 const MOST_CELLS: (f64, f64) = (4.0, 1_048_576.0);
 /// Half-width of the surroundings of a list, as a share of the mean gap between grains.
-const SHARE_OF_GAP: f64 = 0.6;
+const SHARE_OF_GAP: f64 = 2.0;
 /// Smallest and largest half-width [diameters].
 const HALF_WIDTHS: (f64, f64) = (0.02, 0.3);
 /// Volume fraction from which on a run begins with lists: in 2D and in 3D.
@@ -68,7 +70,7 @@ impl<V: Vector> World<V> {
         let diameter = self.laws.largest_diameter();
         let fraction = self.volume_fraction().max(1e-3);
         let gap = libm::pow(V::DENSEST_PACKING / fraction, 1.0 / V::DIMENSION as f64) - 1.0;
-        let half_width = (SHARE_OF_GAP * gap).clamp(HALF_WIDTHS.0, HALF_WIDTHS.1) * diameter;
+        let half_width = (tune(1, SHARE_OF_GAP) * gap).clamp(HALF_WIDTHS.0, tune(2, HALF_WIDTHS.1)) * diameter;
         let reach = diameter + 2.0 * half_width;
         // Only one image of a neighbour may be near: three cells must fit along each periodic axis.
         let wide = (0..V::DIMENSION)
@@ -94,7 +96,7 @@ impl<V: Vector> World<V> {
         if self.falls {
             return least;
         }
-        root(GRAINS_PER_CELL[V::DIMENSION - 2] * volume / grains.max(1.0)).max(least)
+        root(tune(0, GRAINS_PER_CELL[V::DIMENSION - 2]) * volume / grains.max(1.0)).max(least)
     }
 
     /// Puts all grains, which are up to date, into new cells and into order, and makes their lists.

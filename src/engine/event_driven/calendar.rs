@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 use super::body::Plan;
 
 /// Events that a page should hold: enough to sort them together, few enough to stay in the cache.
-const EVENTS_PER_PAGE: f64 = 48.0;
+const EVENTS_PER_PAGE: f64 = 96.0;
 /// Fewest pages of a year.
 const FEWEST_PAGES: usize = 16;
 

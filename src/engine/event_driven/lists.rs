@@ -6,6 +6,7 @@
 
 use super::body::{Body, Plan};
 use super::cells::Cells;
+use super::fetch::fetch;
 use crate::space::Vector;
 
 /// Places that a new list gets beyond its first neighbours.
@@ -59,6 +60,13 @@ impl<V: Vector> Lists<V> {
     pub(super) fn of(&self, row: u32) -> &[u32] {
         let span = self.spans[row as usize];
         &self.pool[span.first as usize..span.first as usize + span.number as usize]
+    }
+
+    /// Sends for the memory that says where the list of the grain in `row` is.
+    #[inline(always)]
+    pub(super) fn send_for_span(&self, row: u32) {
+        fetch(&self.spans[row as usize]);
+        fetch(&self.anchors[row as usize]);
     }
 
     /// Forgets all lists and pools and sets the anchors `[row]`.

@@ -75,14 +75,18 @@ impl<V: Vector> World<V> {
         if let Some(entry) = self.calendar.upcoming(5) {
             fetch(&self.bodies[entry.row as usize]);
             fetch(&self.plans[entry.row as usize]);
+            if let Some(lists) = &self.lists {
+                lists.send_for_span(entry.row);
+            }
         }
         let Some(entry) = self.calendar.upcoming(2) else { return };
         let plan = &self.plans[entry.row as usize];
         if let Some(partner) = self.bodies.get(plan.contact.partner as usize) {
             fetch(partner);
         }
-        if self.lists.is_none() {
-            self.cells.send_for(plan.cell);
+        match &self.lists {
+            Some(lists) => lists.of(entry.row).first().into_iter().for_each(fetch),
+            None => self.cells.send_for(plan.cell),
         }
         let Some(entry) = self.calendar.upcoming(0) else { return };
         let plan = &self.plans[entry.row as usize];

@@ -12,7 +12,7 @@ use super::world::World;
 use crate::space::Vector;
 
 /// Events of each grain in a year, and of all grains at least.
-const EVENTS_PER_YEAR: (f64, f64) = (8.0, 64.0);
+const EVENTS_PER_YEAR: (f64, f64) = (4.0, 64.0);
 /// A year with this many times the events that it was planned for is ended at once.
 const OVERFULL: f64 = 4.0;
 /// A year without events makes the next one this much longer.
