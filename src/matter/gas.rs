@@ -3,6 +3,9 @@
 //! Initial states make a gas, engines advance it, observers read it, logs store it.
 
 use std::ops::Range;
+use std::sync::atomic::Ordering::Relaxed;
+
+use rayon::prelude::*;
 
 use super::clock::Clock;
 use super::columns::Columns;
@@ -10,6 +13,9 @@ use super::grain::Grain;
 use super::grid::Grid;
 use super::sort::CountingSort;
 use crate::space::Vector;
+
+/// Grains that a thread fills in at a time.
+const REFILL_SPAN: usize = 4096;
 
 /// Grains in cell order, with the box that they live in and their time.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,6 +178,44 @@ impl<V: Vector> Gas<V> {
         space.spare.truncate(order.len());
         space.spare.gather(&self.columns, order);
         std::mem::swap(&mut self.columns, &mut space.spare);
+    }
+
+    /// Replaces all grains by those that `grain` makes for each row of `space.cells`: position, velocity,
+    /// identity. They come into the order of `space.cells`.
+    pub fn refill(
+        &mut self,
+        space: &mut SortSpace<V>,
+        grain: impl Fn(&Grid<V>, usize) -> (V, V, u32) + Sync,
+    ) {
+        let order = space.sort.order(&space.cells, &mut self.offsets);
+        let (grid, columns) = (&self.grid, &mut self.columns);
+        columns.positions.resize(order.len(), V::ZERO);
+        columns.velocities.resize(order.len(), V::ZERO);
+        columns.ids.resize(order.len(), 0);
+        (columns.positions.par_iter_mut())
+            .zip(columns.velocities.par_iter_mut())
+            .zip(columns.ids.par_iter_mut())
+            .zip(order)
+            .with_min_len(REFILL_SPAN)
+            .for_each(|(((position, velocity), id), row)| {
+                (*position, *velocity, *id) = grain(grid, row.load(Relaxed) as usize);
+            });
+    }
+
+    /// After [`Gas::refill`]: takes over spins and species, where there are any, of the same rows.
+    pub fn refill_labels(
+        &mut self,
+        space: &mut SortSpace<V>,
+        spins: Option<&[V::Spin]>,
+        species: Option<&[u8]>,
+    ) {
+        if spins.is_none() && species.is_none() {
+            return;
+        }
+        let order = space.sort.order(&space.cells, &mut self.offsets);
+        let rows = || order.iter().map(|row| row.load(Relaxed) as usize);
+        self.columns.spins = spins.map(|spins| rows().map(|row| spins[row]).collect());
+        self.columns.species = species.map(|species| rows().map(|row| species[row]).collect());
     }
 
     /// Takes over the spare columns, written by an engine row by row, in the order of `space.cells`.

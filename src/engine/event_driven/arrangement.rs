@@ -8,9 +8,9 @@ use super::rules::Structure;
 use super::world::World;
 use crate::space::Vector;
 
-/// Grains in a cell, where grains are too far apart for cells of their own size: in 2D and in 3D.
+/// Grains in a cell, where they are too far apart for cells of their own size: in 2D and in 3D. Measured: fewer
+/// grains make more crossings, more grains longer searches.
 const GRAINS_PER_CELL: [f64; 2] = [0.7, 0.4];
-fn tune(k: usize, default: f64) -> f64 { std::env::var(format!("TUNE{k}")).ok().and_then(|x| x.parse().ok()).unwrap_or(default) }
 
 /// Most cells beside a number for each grain.
 const MOST_CELLS: (f64, f64) = (4.0, 1_048_576.0);
@@ -19,11 +19,11 @@ const SHARE_OF_GAP: f64 = 2.0;
 /// Smallest and largest half-width [diameters].
 const HALF_WIDTHS: (f64, f64) = (0.02, 0.3);
 /// Volume fraction from which on a run begins with lists: in 2D and in 3D.
-const DENSE: [f64; 2] = [0.6, 0.4];
-/// Collisions for each crossing above which lists take over from cells.
-const COLLISIONS_PER_CROSSING: f64 = 4.0;
+const DENSE: [f64; 2] = [0.8, 0.55];
+/// Collisions for each crossing above which lists take over from cells: grains are then caged.
+const COLLISIONS_PER_CROSSING: f64 = 40.0;
 /// Collisions for each renewal below which cells take over from lists.
-const COLLISIONS_PER_RENEWAL: f64 = 1.0;
+const COLLISIONS_PER_RENEWAL: f64 = 4.0;
 
 /// Cells of a side, and lists of a half-width if any [length].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,9 @@ impl<V: Vector> World<V> {
             return None;
         }
         match &self.lists {
-            None if collisions > COLLISIONS_PER_CROSSING * crossings + grains as f64 => Some(self.with_lists()),
+            None if collisions > COLLISIONS_PER_CROSSING * crossings + grains as f64 => {
+                Some(self.with_lists())
+            }
             Some(_) if collisions < COLLISIONS_PER_RENEWAL * crossings => Some(self.with_cells()),
             _ => None,
         }
@@ -70,16 +72,12 @@ impl<V: Vector> World<V> {
         let diameter = self.laws.largest_diameter();
         let fraction = self.volume_fraction().max(1e-3);
         let gap = libm::pow(V::DENSEST_PACKING / fraction, 1.0 / V::DIMENSION as f64) - 1.0;
-        let half_width = (tune(1, SHARE_OF_GAP) * gap).clamp(HALF_WIDTHS.0, tune(2, HALF_WIDTHS.1)) * diameter;
+        let half_width = (SHARE_OF_GAP * gap).clamp(HALF_WIDTHS.0, HALF_WIDTHS.1) * diameter;
         let reach = diameter + 2.0 * half_width;
         // Only one image of a neighbour may be near: three cells must fit along each periodic axis.
         let wide = (0..V::DIMENSION)
             .all(|axis| !self.laws.boundary.is_periodic(axis) || self.laws.size[axis] > 3.01 * reach);
-        if wide {
-            Arrangement { side: reach, half_width: Some(half_width) }
-        } else {
-            self.with_cells()
-        }
+        if wide { Arrangement { side: reach, half_width: Some(half_width) } } else { self.with_cells() }
     }
 
     /// Share of the box that the grains fill at their full size.
@@ -96,7 +94,7 @@ impl<V: Vector> World<V> {
         if self.falls {
             return least;
         }
-        root(tune(0, GRAINS_PER_CELL[V::DIMENSION - 2]) * volume / grains.max(1.0)).max(least)
+        root(GRAINS_PER_CELL[V::DIMENSION - 2] * volume / grains.max(1.0)).max(least)
     }
 
     /// Puts all grains, which are up to date, into new cells and into order, and makes their lists.

@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 use super::body::Plan;
 
 /// Events that a page should hold: enough to sort them together, few enough to stay in the cache.
-const EVENTS_PER_PAGE: f64 = 96.0;
+const EVENTS_PER_PAGE: f64 = 128.0;
 /// Fewest pages of a year.
 const FEWEST_PAGES: usize = 16;
 
@@ -63,13 +63,13 @@ pub(super) struct Calendar {
 
 /// How the calendar was used since the year began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Usage {
+pub struct Usage {
     /// Pages opened.
-    pub(super) opened: u64,
+    pub opened: u64,
     /// Entries on them.
-    pub(super) entries: u64,
-    /// Entries that were written on the open page.
-    pub(super) late: u64,
+    pub entries: u64,
+    /// Entries that were written on the page that was open.
+    pub late: u64,
 }
 
 impl Calendar {

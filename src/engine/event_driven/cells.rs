@@ -147,8 +147,12 @@ impl<V: Vector> Cells<V> {
         let rows = if V::DIMENSION == 3 { 3 } else { 1 };
         for layer in 0..rows {
             for line in 0..3 {
-                let step = (line * self.strides[1]).wrapping_sub(self.strides[1])
-                    .wrapping_add(if rows == 3 { (layer * self.strides[2]).wrapping_sub(self.strides[2]) } else { 0 });
+                let step =
+                    (line * self.strides[1]).wrapping_sub(self.strides[1]).wrapping_add(if rows == 3 {
+                        (layer * self.strides[2]).wrapping_sub(self.strides[2])
+                    } else {
+                        0
+                    });
                 if let Some(head) = self.heads.get(cell.wrapping_add(step) as usize) {
                     fetch(head);
                 }
@@ -163,7 +167,9 @@ impl<V: Vector> Cells<V> {
         let mut rows = [Row { places: [(0, 0.0); 3], number: 1 }; 3];
         for axis in 0..V::DIMENSION {
             rows[axis] = match only {
-                Some(face) if face.axis() == axis => self.row(at[axis], axis, [face.upper, !face.upper], false),
+                Some(face) if face.axis() == axis => {
+                    self.row(at[axis], axis, [face.upper, !face.upper], false)
+                }
                 _ => self.row(at[axis], axis, [true, true], true),
             };
         }
@@ -248,10 +254,10 @@ impl Layers {
                 let step = |axis: usize| (at[axis] as u32).wrapping_mul(strides[axis]);
                 let sum = step(0).wrapping_add(step(1)).wrapping_add(step(2));
                 layers.all.push(sum);
-                for axis in 0..dimension {
-                    match at[axis] {
-                        -1 => layers.sides[axis][0].push(sum),
-                        1 => layers.sides[axis][1].push(sum),
+                for (sides, at) in layers.sides.iter_mut().zip(at) {
+                    match at {
+                        -1 => sides[0].push(sum),
+                        1 => sides[1].push(sum),
                         _ => {}
                     }
                 }

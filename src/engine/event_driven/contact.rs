@@ -52,7 +52,12 @@ pub fn pair_contact<V: Vector>(
     None
 }
 
-fn growing_contact<V: Vector>(separation: V, relative_velocity: V, distance: f64, growth: f64) -> Option<f64> {
+fn growing_contact<V: Vector>(
+    separation: V,
+    relative_velocity: V,
+    distance: f64,
+    growth: f64,
+) -> Option<f64> {
     let b = separation.dot(relative_velocity) - distance * growth;
     let c = separation.length_squared() - distance * distance;
     descent(c, b, relative_velocity.length_squared() - growth * growth)

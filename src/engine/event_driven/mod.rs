@@ -30,6 +30,7 @@ use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
 use body::Event;
+pub use calendar::Usage;
 use laws::Laws;
 use rules::Structure;
 use world::World;
@@ -51,6 +52,16 @@ impl<V: Vector> EventDriven<V> {
     /// An engine under `laws` that finds partners by `structure`.
     pub fn new(laws: Laws<V>, structure: Structure) -> Self {
         EventDriven { laws, structure, world: None, space: SortSpace::default() }
+    }
+
+    /// How the calendar was used since its year began; nothing before the first step.
+    pub fn calendar_usage(&self) -> Usage {
+        self.world.as_ref().map_or_else(Usage::default, |world| world.calendar.usage())
+    }
+
+    /// Whether partners are found by lists of neighbours at present, not in cells.
+    pub fn has_lists(&self) -> bool {
+        self.world.as_ref().is_some_and(|world| world.lists.is_some())
     }
 }
 
@@ -141,13 +152,5 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
 
     fn excludes_overlap(&self) -> bool {
         true
-    }
-}
-
-impl<V: Vector> EventDriven<V> {
-    /// TEMP
-    pub fn describe(&self) -> String {
-        let w = self.world.as_ref().unwrap();
-        format!("{:?} year {:.3} lists {} cells {:?}", w.calendar.usage(), w.calendar.year(), w.lists.is_some(), w.cells.counts())
     }
 }

@@ -5,6 +5,8 @@ use super::world::World;
 use crate::engine::EngineError;
 use crate::matter::clock::Clock;
 use crate::matter::gas::{Gas, SortSpace};
+use crate::matter::grid::Grid;
+use crate::matter::sort::REMOVED;
 use crate::space::Vector;
 
 impl<V: Vector> World<V> {
@@ -24,43 +26,39 @@ impl<V: Vector> World<V> {
                 clock
             }
         };
-        let columns = &mut space.spare;
-        columns.positions.clear();
-        columns.velocities.clear();
-        columns.ids.clear();
         space.cells.clear();
-        let present = |row: &usize| self.plans[*row].cell != NONE;
-        let mut speeds = 0.0;
-        for row in (0..self.bodies.len()).filter(present) {
-            let body = &self.bodies[row];
-            let (mut position, velocity) =
-                (body.position_at(now, self.laws.gravity), body.velocity_at(now, self.laws.gravity));
-            (0..V::DIMENSION).for_each(|axis| gas.grid().wrap(&mut position, axis));
-            speeds += velocity.length_squared() + position.length_squared();
-            columns.positions.push(position);
-            columns.velocities.push(velocity);
-            columns.ids.push(self.ids[row]);
-            space.cells.push(gas.grid().cell_of(position));
+        for (row, plan) in self.plans.iter().enumerate() {
+            if plan.cell == NONE {
+                space.cells.push(REMOVED);
+                continue;
+            }
+            let (position, velocity) = self.seen(row, now, gas.grid());
+            let cell = gas.grid().cell_of(position);
+            if !(position.is_finite() && velocity.is_finite()) {
+                return Err(self.not_finite(row, cell, now));
+            }
+            space.cells.push(cell);
         }
-        let rows = || (0..self.bodies.len()).filter(present);
-        columns.spins = self.spins.as_ref().map(|spins| rows().map(|row| spins[row]).collect());
-        columns.species = self.species.as_ref().map(|species| rows().map(|row| species[row]).collect());
-        if !speeds.is_finite() {
-            return Err(self.not_finite(now, space));
-        }
-        gas.parts_mut().2.match_shape(&space.spare);
-        gas.sort_from_spare(space);
+        gas.refill(space, |grid, row| {
+            let (position, velocity) = self.seen(row, now, grid);
+            (position, velocity, self.ids[row])
+        });
+        gas.refill_labels(space, self.spins.as_deref(), self.species.as_deref());
         Ok(())
     }
 
-    /// Names the first grain that is not where a number can say.
-    fn not_finite(&self, now: f64, space: &SortSpace<V>) -> EngineError {
-        let columns = &space.spare;
-        let lost = |row: &usize| !(columns.positions[*row].is_finite() && columns.velocities[*row].is_finite());
-        let row = (0..columns.len()).find(lost).unwrap_or(0);
+    /// Position in the box and velocity of the grain in `row`, `now` after the origin of time.
+    fn seen(&self, row: usize, now: f64, grid: &Grid<V>) -> (V, V) {
+        let body = &self.bodies[row];
+        let mut position = body.position_at(now, self.laws.gravity);
+        (0..V::DIMENSION).for_each(|axis| grid.wrap(&mut position, axis));
+        (position, body.velocity_at(now, self.laws.gravity))
+    }
+
+    fn not_finite(&self, row: usize, cell: u32, now: f64) -> EngineError {
         EngineError::NotFinite {
-            id: columns.ids[row],
-            cell: space.cells[row],
+            id: self.ids[row],
+            cell,
             step: 0,
             seed: self.laws.seed,
             time: self.origin.time() + now,
