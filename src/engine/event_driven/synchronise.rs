@@ -1,5 +1,7 @@
 //! The gas as others see it: copies of all grains at one time. The grains themselves are not touched.
 
+use rayon::prelude::*;
+
 use super::body::NONE;
 use super::world::World;
 use crate::engine::EngineError;
@@ -8,6 +10,9 @@ use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::grid::Grid;
 use crate::matter::sort::REMOVED;
 use crate::space::Vector;
+
+/// Grains that a thread looks at, at a time.
+const SPAN: usize = 4096;
 
 impl<V: Vector> World<V> {
     /// Writes all grains to `gas` as they are at `time`, or now.
@@ -26,18 +31,21 @@ impl<V: Vector> World<V> {
                 clock
             }
         };
-        space.cells.clear();
-        for (row, plan) in self.plans.iter().enumerate() {
-            if plan.cell == NONE {
-                space.cells.push(REMOVED);
-                continue;
-            }
-            let (position, velocity) = self.seen(row, now, gas.grid());
-            let cell = gas.grid().cell_of(position);
-            if !(position.is_finite() && velocity.is_finite()) {
-                return Err(self.not_finite(row, cell, now));
-            }
-            space.cells.push(cell);
+        let grid = gas.grid();
+        space.cells.resize(self.bodies.len(), REMOVED);
+        let lost =
+            space.cells.par_iter_mut().zip(0..self.bodies.len()).with_min_len(SPAN).map(|(cell, row)| {
+                if self.plans[row].cell == NONE {
+                    *cell = REMOVED;
+                    return None;
+                }
+                let (position, velocity) = self.seen(row, now, grid);
+                *cell = grid.cell_of(position);
+                (!(position.is_finite() && velocity.is_finite())).then_some(row)
+            });
+        // The first one, whoever finds it.
+        if let Some(row) = lost.flatten().min() {
+            return Err(self.not_finite(row, space.cells[row], now));
         }
         gas.refill(space, |grid, row| {
             let (position, velocity) = self.seen(row, now, grid);
@@ -48,10 +56,13 @@ impl<V: Vector> World<V> {
     }
 
     /// Position in the box and velocity of the grain in `row`, `now` after the origin of time.
+    #[inline]
     fn seen(&self, row: usize, now: f64, grid: &Grid<V>) -> (V, V) {
         let body = &self.bodies[row];
         let mut position = body.position_at(now, self.laws.gravity);
-        (0..V::DIMENSION).for_each(|axis| grid.wrap(&mut position, axis));
+        for axis in 0..V::DIMENSION {
+            grid.wrap(&mut position, axis);
+        }
         (position, body.velocity_at(now, self.laws.gravity))
     }
 
