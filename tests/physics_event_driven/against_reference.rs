@@ -39,11 +39,8 @@ impl<V: Vector> Setup<V> {
     }
 
     fn mixed(mut self) -> Self {
-        self.laws.species = vec![
-            self.laws.grain,
-            Grain { diameter: 0.5, mass: 0.2 },
-            Grain { diameter: 0.8, mass: 3.0 },
-        ];
+        self.laws.species =
+            vec![self.laws.grain, Grain { diameter: 0.5, mass: 0.2 }, Grain { diameter: 0.8, mass: 3.0 }];
         self.species = (0..self.grains.len()).map(|k| (k % 3) as u8).collect();
         self
     }

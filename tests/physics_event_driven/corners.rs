@@ -91,10 +91,8 @@ fn grains_in_touch() {
                 [(DVec2::X, 0), (-DVec2::X, 1), (DVec2::Y, 0), (DVec2::new(-1e-17, 1.0), 1)]
             {
                 let laws = laws(DVec2::splat(9.5));
-                let grains = [
-                    (DVec2::new(edge, 2.0), DVec2::ZERO),
-                    (DVec2::new((edge + 1.0) % 9.5, 2.0), relative),
-                ];
+                let grains =
+                    [(DVec2::new(edge, 2.0), DVec2::ZERO), (DVec2::new((edge + 1.0) % 9.5, 2.0), relative)];
                 let mut pair = Drive::new(&laws, structure, &grains);
                 pair.to(0.01);
                 let rounding = edge != 3.0 && relative.x.abs() < 0.5;

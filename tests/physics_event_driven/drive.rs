@@ -150,9 +150,8 @@ impl<V: Vector> Drive<V> {
 
     /// Kinetic energy of the translation.
     pub(crate) fn energy(&self) -> f64 {
-        let of_row = |(row, velocity): (usize, &V)| {
-            0.5 * self.gas.grain_at(row).mass * velocity.length_squared()
-        };
+        let of_row =
+            |(row, velocity): (usize, &V)| 0.5 * self.gas.grain_at(row).mass * velocity.length_squared();
         self.gas.velocities().iter().enumerate().map(of_row).sum()
     }
 }

@@ -59,8 +59,7 @@ fn returns<V: Vector>(per_axis: usize, spacing: f64) {
         let turned = gas.gas.time() * (1.0 + 1e-9);
         gas.to(turned);
         let there = gas.counts.collisions;
-        let back: Vec<(V, V)> =
-            (0..grains as u32).map(|id| (gas.position(id), -gas.velocity(id))).collect();
+        let back: Vec<(V, V)> = (0..grains as u32).map(|id| (gas.position(id), -gas.velocity(id))).collect();
         let mut gas = Drive::new(&laws, structure, &back);
         gas.to(turned);
         assert!(gas.counts.collisions.abs_diff(there) <= 1, "{} {there}", gas.counts.collisions);

@@ -50,13 +50,12 @@ fn next_bounce(grain: &mut Drive<DVec2>, floor: &Floor, step: f64) -> Bounce {
     Bounce { time: high, velocity: after + floor.gravity * (end - high) }
 }
 
-/// Aω²/g = 10, r = 0.8: chaotic, so that errors grow from bounce to bounce.
+/// Aω²/g = 2, r = 0.6: chaotic, so that errors grow from bounce to bounce.
 #[test]
 fn ten_chaotic_bounces() {
-    let floor =
-        Floor { amplitude: 0.0248, angular_frequency: 20.0 * PI, gravity: 9.81, restitution: 0.8 };
+    let floor = Floor { amplitude: 0.00497, angular_frequency: 20.0 * PI, gravity: 9.81, restitution: 0.6 };
     for structure in [0, 1] {
-        let mut bounce = Bounce { time: 0.0, velocity: 2.0 };
+        let mut bounce = Bounce { time: 0.0, velocity: 1.0 };
         let mut engine = grain(&floor, structure, bounce);
         let mut disturbed = Bounce { velocity: bounce.velocity + 1e-9, ..bounce };
         let mut worst = 0.0_f64;
@@ -69,14 +68,13 @@ fn ten_chaotic_bounces() {
         }
         let growth = (disturbed.velocity - bounce.velocity).abs() / 1e-9;
         println!("ten bounces: worst error {worst:.1e}; disturbances grow {growth:.1}-fold");
-        assert!(growth > 100.0, "not chaotic: {growth}");
+        assert!(growth > 1e3, "not chaotic: {growth}");
     }
 }
 
 #[test]
 fn ten_thousand_bounces_of_period_one() {
-    let floor =
-        Floor { amplitude: 0.003, angular_frequency: 20.0 * PI, gravity: 9.81, restitution: 0.5 };
+    let floor = Floor { amplitude: 0.003, angular_frequency: 20.0 * PI, gravity: 9.81, restitution: 0.5 };
     let orbit = floor.orbit(1).unwrap();
     for structure in [0, 1] {
         let mut engine = grain(&floor, structure, orbit);
@@ -97,7 +95,10 @@ fn ten_thousand_bounces_of_period_one() {
             ];
             worst = [worst[0].max(errors[0]), worst[1].max(errors[1])];
             if [10, 100, 1000, 10_000].contains(&k) {
-                println!("period one, {k} bounces: off by {:.1e} (height), {:.1e} (velocity)", worst[0], worst[1]);
+                println!(
+                    "period one, {k} bounces: off by {:.1e} (height), {:.1e} (velocity)",
+                    worst[0], worst[1]
+                );
             }
         }
         // The clock's own resolution at t = 1000 is 10⁻¹³; g times that is a velocity of 10⁻¹².
