@@ -22,14 +22,21 @@ impl<V: Vector> World<V> {
             return Ok(());
         }
         self.advance(partner);
+        // Who has foreseen the collision must not matter for the angle that a turn draws.
+        let turns = self.laws.cure.rotation.is_some();
+        let (row, partner) = match turns && self.ids[partner as usize] < self.ids[row as usize] {
+            true => (partner, row),
+            false => (row, partner),
+        };
         let [one, other] = [row, partner].map(|row| self.bodies[row as usize]);
         let mut velocities = [one.velocity, other.velocity];
         let separation = self.nearest_image(other.position - one.position);
         let mut meeting = Meeting::of(separation, &velocities);
         if self.laws.growth.rate != 0.0 {
-            // The surfaces approach faster than the centres (Miller 2004, equation 2.17).
-            let growth = self.contact_distance(row, partner) * self.laws.growth.rate;
-            meeting.approach += growth * meeting.distance_squared.sqrt();
+            // The surfaces approach faster than the centres (Miller 2004, equation 2.17). The product is the one
+            // by which the contact was foreseen, to the last bit.
+            let distance = self.contact_distance(row, partner);
+            meeting.approach += distance * self.scale_now() * (distance * self.laws.growth.rate);
         }
         // A rounding may make a grazing pair pass: the event is evaluated again, now that both stand here.
         if meeting.approach > 0.0 {
@@ -67,6 +74,9 @@ impl<V: Vector> World<V> {
                 turn_relative_velocity(largest, &pair, meeting.separation, velocities, &mut random);
             cured = true;
         }
+        if restitution == 1.0 {
+            part(meeting, &pair, velocities);
+        }
         let distance = meeting.distance_squared.sqrt();
         let head_on = meeting.approach * meeting.approach
             / (meeting.distance_squared * meeting.relative_velocity.length_squared());
@@ -80,11 +90,17 @@ impl<V: Vector> World<V> {
 
     /// The grain in `row` has collided, with a grain or a wall.
     fn note_collision(&mut self, row: u32) -> Result<(), EngineError> {
-        let body = &mut self.bodies[row as usize];
-        body.collisions = body.collisions.wrapping_add(1);
         if let Some(last) = &mut self.last_collisions {
             last[row as usize] = self.now;
         }
+        self.note_contact(row)
+    }
+
+    /// The grain in `row` was in contact, whether or not that changed anything: at rest on a floor it is so
+    /// without end.
+    fn note_contact(&mut self, row: u32) -> Result<(), EngineError> {
+        let body = &mut self.bodies[row as usize];
+        body.collisions = body.collisions.wrapping_add(1);
         let span = self.pace.shortest_span;
         match self.watch.note(row, body.collisions, self.now, span) {
             None => Ok(()),
@@ -184,6 +200,8 @@ impl<V: Vector> World<V> {
             self.events.wall_hits += 1;
             self.events.cured += u64::from(cured);
             self.note_collision(row)?;
+        } else {
+            self.note_contact(row)?;
         }
         self.foresee(row);
         Ok(())
@@ -220,6 +238,23 @@ impl<V: Vector> World<V> {
     pub(super) fn look_again(&mut self, row: u32) {
         self.advance(row);
         self.foresee(row);
+    }
+}
+
+/// Rounding swallows what an elastic collision changes where two grains all but slide along each other: they would
+/// collide again and again at the same moment. The smallest change that rounding leaves parts them.
+fn part<V: Vector>(meeting: &Meeting<V>, pair: &PairOfGrains, velocities: &mut [V; 2]) {
+    // What growth adds to the approach is the same after the collision.
+    let growth = meeting.approach - meeting.relative_velocity.dot(meeting.separation);
+    let mut change =
+        f64::EPSILON * (velocities[0] - velocities[1]).length() / meeting.distance_squared.sqrt();
+    for _ in 0..64 {
+        if Meeting::of(meeting.separation, velocities).approach + growth <= 0.0 {
+            return;
+        }
+        velocities[0] -= meeting.separation * (change * pair.shares[0]);
+        velocities[1] += meeting.separation * (change * pair.shares[1]);
+        change *= 2.0;
     }
 }
 

@@ -45,12 +45,12 @@ impl<V: Vector> World<V> {
             return best;
         }
         self.cells.around(cell, only).for_each(|cell, shift: V| {
-            let image = body.position - shift;
             let mut other = self.cells.first(cell);
             while other != NONE {
                 let partner = &self.bodies[other as usize];
                 let (place, dv) = self.relative::<FALLS>(body, partner);
-                self.consider(row, other, place - image, dv, scale, &mut best);
+                // In the order of `nearest_image`, so that the collision sees the same vector to the last bit.
+                self.consider(row, other, (place - body.position) + shift, dv, scale, &mut best);
                 other = partner.next;
             }
         });

@@ -104,8 +104,12 @@ impl<V: Vector> World<V> {
             return;
         }
         let wasteful = self.lists.as_ref().is_some_and(Lists::is_wasteful);
-        if decayed || wasteful || self.pace.gone > 0 {
+        if decayed || self.pace.gone > 0 {
             self.order();
+        } else if wasteful && let Some(lists) = &mut self.lists {
+            // How full the pool is does not belong to a saved state: it must not decide on the order of rows.
+            lists.reset(lists.anchors().to_vec());
+            self.link();
         }
         for (row, plan) in self.plans.iter().enumerate() {
             self.calendar.write(Entry { time: plan.time, id: self.ids[row], row: row as u32 });
@@ -139,3 +143,7 @@ impl<V: Vector> World<V> {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "year_tests.rs"]
+mod tests;
