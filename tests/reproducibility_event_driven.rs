@@ -39,8 +39,8 @@ fn smalls() -> Vec<(&'static str, String)> {
     let driven = |boundary: &str, more: &str| {
         format!(
             "dimension = 2\ngravity = [0.0, -1.0]\n{HEAD}[engine.event_driven]\n\
-             collapse = {{ contact_time = 1e-3 }}\n[domain]\nsize = [40.0, 80.0]\n[boundary]\n{boundary}\
-             [particles]\ncount = 300\nrestitution = 0.85\n{MAXWELL}{more}[run]\ntime = 12.0\n"
+             collapse = {{ contact_time = 5e-3 }}\n[domain]\nsize = [40.0, 80.0]\n[boundary]\n{boundary}\
+             [particles]\ncount = 150\nrestitution = 0.85\n{MAXWELL}{more}[run]\ntime = 6.0\n"
         )
     };
     let turned = "[engine.event_driven]\ncollapse = { rotation = 5 }\n";
