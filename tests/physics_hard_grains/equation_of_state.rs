@@ -70,7 +70,7 @@ fn fluids_have_their_pressure() {
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn spheres_have_the_pressure_of_carnahan_and_starling() {
     for volume_fraction in [0.1, 0.2, 0.3, 0.4, 0.45] {
-        check::<DVec3>(4000, volume_fraction, 4e6, spheres(volume_fraction), 0.008);
+        check::<DVec3>(4000, volume_fraction, 2.4e6, spheres(volume_fraction), 0.008);
     }
 }
 
@@ -78,6 +78,6 @@ fn spheres_have_the_pressure_of_carnahan_and_starling() {
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn disks_have_the_pressure_of_henderson_corrected() {
     for volume_fraction in [0.1, 0.3, 0.45, 0.6] {
-        check::<DVec2>(4000, volume_fraction, 4e6, disks(volume_fraction), 0.004);
+        check::<DVec2>(4000, volume_fraction, 2.4e6, disks(volume_fraction), 0.004);
     }
 }
