@@ -11,6 +11,16 @@ const SCENARIOS: &[(&str, &str, &str)] = &[
     ("cooling", "Cooling of a granular gas (Haff's law)", include_str!("../../scenarios/cooling.toml")),
     ("clustering", "Clusters in a freely cooling gas", include_str!("../../scenarios/clustering.toml")),
     ("sedimentation", "A hundred disks settle in a box", include_str!("../../scenarios/sedimentation.toml")),
+    (
+        "simic-cooling",
+        "Cooling between walls, event by event",
+        include_str!("../../scenarios/simic-cooling.toml"),
+    ),
+    (
+        "hard-spheres",
+        "Pressure of an elastic hard-sphere fluid",
+        include_str!("../../scenarios/hard-spheres.toml"),
+    ),
 ];
 
 /// Name and title of each.

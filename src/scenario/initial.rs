@@ -130,4 +130,6 @@ fn ready<V: Vector>(scenario: &Scenario<V>, columns: Columns<V>) -> Gas<V> {
 }
 
 #[cfg(test)]
+mod hard_tests;
+#[cfg(test)]
 mod tests;

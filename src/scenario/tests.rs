@@ -138,7 +138,7 @@ fn options_are_named_in_their_mistakes() {
         ),
         "{text}"
     );
-    assert!(text.contains("choose one of \"dsmc\", \"cba\", \"hsmc\""), "{text}");
+    assert!(text.contains("choose one of \"dsmc\", \"cba\", \"hsmc\", \"event-driven\""), "{text}");
     assert!(text.contains("--seed 18446744073709551615: is too large"), "{text}");
     let sets = ["seed=-1", "oops", "run.time=-1", "domain.size[0]=-4", "title=''"];
     let text =

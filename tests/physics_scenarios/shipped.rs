@@ -13,7 +13,8 @@ fn shorter(name: &str) -> &'static [&'static str] {
         "clustering" => {
             &["domain.size=[100.0, 100.0]", "particles.count=3183", "run.collisions_per_particle=20.0"]
         }
-        "cooling" => &["run.collisions_per_particle=10.0", "initial.equilibrate=2.0"],
+        "cooling" | "hard-spheres" => &["run.collisions_per_particle=10.0", "initial.equilibrate=2.0"],
+        "simic-cooling" => &["run.collisions_per_particle=10.0"],
         "pipe" => &["run.time=40.0"],
         "sedimentation" => &["run.time=0.5"],
         "shear" => &["run.collisions_per_particle=20.0"],
@@ -26,7 +27,10 @@ fn shorter(name: &str) -> &'static [&'static str] {
 fn what_it_shows(name: &str) -> &'static [&'static str] {
     match name {
         "heap" | "heap-full" => &["heap_height", "centre_of_mass_height", "kinetic_energy_final"],
-        "clustering" | "cooling" => &["compressibility_factor", "temperature", "momentum_drift"],
+        "simic-cooling" => &["temperature", "wall_normal_stress"],
+        "clustering" | "cooling" | "hard-spheres" => {
+            &["compressibility_factor", "temperature", "momentum_drift"]
+        }
         "pipe" => &["contrast_over_poisson", "flow_rate", "flow_velocity", "spectrum_slope"],
         "sedimentation" => &["centre_of_mass_height", "kinetic_energy_final"],
         "shear" => &["velocity_profile_slope", "velocity_profile_r_squared", "wall_shear_stress"],

@@ -12,7 +12,9 @@ const DRAWS: u32 = 20_000;
 
 /// Whether the grains of `scenario` are few enough to be put in one by one.
 pub(in crate::scenario) fn has_room<V: Vector>(scenario: &Scenario<V>) -> bool {
-    scenario.volume_fraction() <= DENSEST_BY_INSERTION[V::DIMENSION]
+    // The number of grains is rounded: the last one is not counted.
+    let share = 1.0 - 1.0 / f64::from(scenario.count.max(1));
+    scenario.volume_fraction() * share <= DENSEST_BY_INSERTION[V::DIMENSION]
 }
 
 /// Places `[id]` for grains of these `diameters` `[id]` in the domain, no two of them overlapping and each a

@@ -17,7 +17,7 @@ pub(in crate::scenario) struct InitialTable {
     pub(in crate::scenario) equilibrate: Option<f64>,
 }
 
-const POSITION_FORMS: &str = "\"random\", \"lattice\" or { log = \"other/log.mcap\" }";
+const POSITION_FORMS: &str = "\"random\", \"lattice\", \"compressed\" or { log = \"other/log.mcap\" }";
 const VELOCITY_FORMS: &str = "{ maxwell = 1.0 }, { uniform = 1.0 } or \"rest\"";
 
 /// Reads `[initial]`.
@@ -47,8 +47,10 @@ fn positions(initial: &Section<'_>) -> Option<InitialPositions> {
     match item.as_str() {
         Some("random") => Some(InitialPositions::Random),
         Some("lattice") => Some(InitialPositions::Lattice),
+        Some("compressed") => Some(InitialPositions::Compressed),
         Some(text) => {
-            let remedy = did_you_mean(text, ["random", "lattice"], &format!("write {POSITION_FORMS}"));
+            let remedy =
+                did_you_mean(text, ["random", "lattice", "compressed"], &format!("write {POSITION_FORMS}"));
             initial.mistake(KEY, format!("\"{text}\" is not known; {remedy}"));
             None
         }
