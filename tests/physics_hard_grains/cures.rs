@@ -1,6 +1,7 @@
 //! Cures of inelastic collapse (Simić 2017, figures 7.3 and 7.4), and collapse without one.
 
 use std::process::{Command, Output};
+use std::time::Instant;
 
 use glam::DVec2;
 use grainflow::engine::EngineError;
@@ -10,10 +11,10 @@ use crate::trial::Trial;
 
 /// The four cures, with the thermal speed 1 and diameter 2 at the start.
 const CURES: [&str; 4] = [
-    "{ elastic_below = 1e-3 }",
+    "{ elastic_below = 1e-5 }",
     "{ contact_time = 1e-3 }",
     "{ rotation = 5.0 }",
-    "{ elastic_below = 1e-3, rotation = 5.0 }",
+    "{ elastic_below = 1e-5, rotation = 5.0 }",
 ];
 
 /// 2600 disks between smooth elastic walls.
@@ -28,45 +29,60 @@ fn text(restitution: f64, cure: &str) -> String {
     )
 }
 
-/// T/T₀ at each of `taus` collisions per particle.
-fn temperatures(restitution: f64, cure: &str, taus: &[f64]) -> Vec<f64> {
+/// The first time of a history; each of the others is twice the one before.
+const FIRST_TIME: f64 = 10.0;
+
+/// T/T₀ at each of `taus` collisions per particle, and at each of the times up to the last of them.
+struct History {
+    at_taus: Vec<f64>,
+    at_times: Vec<f64>,
+}
+
+fn history(restitution: f64, cure: &str, taus: &[f64]) -> History {
     let mut trial = Trial::<DVec2>::equilibrated(&text(restitution, cure), 1, 10.0);
-    let start = std::time::Instant::now();
-    let mut at = |&tau: &f64| {
-        trial.advance_to(tau);
-        trial.temperature()
-    };
-    let found: Vec<f64> = taus.iter().map(&mut at).collect();
-    let shown: Vec<String> = found.iter().map(|found| format!("{found:.2e}")).collect();
-    let events = trial.totals.events;
+    let start = Instant::now();
+    let (mut at_taus, mut at_times, mut time) = (Vec::new(), Vec::new(), FIRST_TIME);
+    for &tau in taus {
+        while trial.totals.collisions_per_particle < tau {
+            trial.advance_to_either(time, tau).unwrap_or_else(|error| panic!("r = {restitution} {cure}: {error}"));
+            if trial.gas.time() >= time {
+                at_times.push(trial.temperature());
+                time *= 2.0;
+            }
+        }
+        at_taus.push(trial.temperature());
+        assert_eq!(trial.invalid_states(), 0);
+    }
+    let (events, collisions) = (trial.totals.events, trial.totals.counts.collisions);
+    let shown: Vec<String> = at_taus.iter().map(|found| format!("{found:.2e}")).collect();
     println!(
-        "r = {restitution} {cure}: T at {taus:?} {}, t = {:.1}, {} events, cured {:.2e} of collisions, {:.1} s",
+        "r = {restitution} {cure}: T at τ = {taus:?}: {}; t = {:.3e}, {} events, {:.1e} of collisions cured, {:.1} s",
         shown.join(" "),
         trial.gas.time(),
         events.all,
-        events.cured as f64 / trial.totals.counts.collisions as f64,
+        events.cured as f64 / collisions as f64,
         start.elapsed().as_secs_f64(),
     );
-    assert_eq!(trial.invalid_states(), 0);
-    found
+    History { at_taus, at_times }
 }
 
-/// Largest ratio of temperatures of two cures, at each of `taus`.
-fn spread(restitution: f64, taus: &[f64]) -> Vec<f64> {
-    let runs = CURES.map(|cure| temperatures(restitution, cure, taus));
-    let at = |k: usize| {
-        let all = runs.each_ref().map(|run| run[k]);
+/// Largest ratio of temperatures of two cures: at each of `taus`, and at each time that all reach.
+fn spreads(restitution: f64, taus: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let runs = CURES.map(|cure| history(restitution, cure, taus));
+    let spread = |all: [f64; 4]| {
         all.iter().copied().fold(0.0, f64::max) / all.iter().copied().fold(f64::INFINITY, f64::min)
     };
-    let spread: Vec<f64> = (0..taus.len()).map(at).collect();
-    println!("r = {restitution}: largest over smallest T at {taus:?} {spread:.3?}");
-    spread
+    let times = runs.iter().map(|run| run.at_times.len()).min().unwrap();
+    let by_tau: Vec<f64> = (0..taus.len()).map(|k| spread(runs.each_ref().map(|run| run.at_taus[k]))).collect();
+    let by_time: Vec<f64> = (0..times).map(|k| spread(runs.each_ref().map(|run| run.at_times[k]))).collect();
+    println!("r = {restitution}: largest over smallest T at τ = {taus:?}: {by_tau:.3?}, at t = 10, 20, 40 …: {by_time:.3?}");
+    (by_tau, by_time)
 }
 
 #[test]
 fn cures_agree_for_a_while() {
     for restitution in [0.95, 0.70] {
-        spread(restitution, &[10.0, 100.0]);
+        spreads(restitution, &[10.0, 50.0, 150.0]);
     }
 }
 
@@ -74,7 +90,7 @@ fn cures_agree_for_a_while() {
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn cures_agree_to_800_collisions_per_particle() {
     for restitution in [0.95, 0.70] {
-        spread(restitution, &[10.0, 50.0, 100.0, 200.0, 400.0, 800.0]);
+        spreads(restitution, &[10.0, 50.0, 100.0, 200.0, 400.0, 800.0]);
     }
 }
 

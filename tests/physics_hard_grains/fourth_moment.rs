@@ -52,15 +52,15 @@ fn check<V: Space>(restitution: f64, number: u64, tolerance: f64) {
 
 #[test]
 fn velocities_have_their_fourth_moment() {
-    check::<DVec2>(0.9, 24, 0.006);
-    check::<DVec3>(0.9, 24, 0.004);
+    check::<DVec2>(0.9, 80, 0.006);
+    check::<DVec3>(0.9, 80, 0.005);
 }
 
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn velocities_have_their_fourth_moment_to_two_thousandths() {
     for restitution in [0.9, 0.7] {
-        check::<DVec2>(restitution, 200, 0.002);
-        check::<DVec3>(restitution, 200, 0.002);
+        check::<DVec2>(restitution, 400, 0.002);
+        check::<DVec3>(restitution, 400, 0.002);
     }
 }

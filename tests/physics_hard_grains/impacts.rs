@@ -42,8 +42,8 @@ fn elastic_grains_meet_at_chaotic_impact_parameters() {
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn dense_elastic_grains_meet_at_chaotic_impact_parameters() {
-    check::<DVec2>(4000, 0.6, 4e6);
-    check::<DVec3>(4000, 0.45, 4e6);
+    check::<DVec2>(4000, 0.6, 2e6);
+    check::<DVec3>(4000, 0.45, 2e6);
 }
 
 /// Density of |b|/d in the last tenth, in stretches that end at `taus`.
@@ -64,18 +64,18 @@ fn grazing(count: u32, taus: &[f64]) -> Vec<f64> {
     found
 }
 
-/// As in M 3.7: flat at first, then ever more grazing.
+/// As in figure 3.7 of Müller 2001: flat at first, then ever more grazing.
 fn grows(found: &[f64]) -> bool {
-    (found[0] - 1.0).abs() < 0.06 && found.is_sorted_by(|early, late| early < late) && found[found.len() - 1] > 1.3
+    (found[0] - 1.0).abs() < 0.05 && found[1..].is_sorted_by(|early, late| early < late) && found[found.len() - 1] > 1.15
 }
 
 #[test]
 fn a_clustering_gas_comes_to_graze() {
-    assert!(grows(&grazing(10_000, &[2.0, 20.0, 60.0])));
+    assert!(grows(&grazing(10_000, &[10.0, 40.0, 80.0, 160.0])));
 }
 
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn a_large_clustering_gas_comes_to_graze() {
-    assert!(grows(&grazing(99_856, &[2.0, 10.0, 20.0, 40.0, 80.0])));
+    assert!(grows(&grazing(99_856, &[10.0, 40.0, 80.0, 160.0])));
 }

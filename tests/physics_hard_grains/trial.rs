@@ -85,20 +85,18 @@ impl<V: Space> Trial<V> {
 
     /// The same, with what the engine has to say.
     pub(crate) fn try_to_advance_to(&mut self, collisions_per_particle: f64) -> Result<(), EngineError> {
-        let is_reached = |done: f64| done >= collisions_per_particle;
-        while !is_reached(self.totals.collisions_per_particle) {
-            let collisions =
-                self.totals.collisions_until(self.gas.len(), collisions_per_particle, is_reached);
-            self.step(Horizon { collisions, ..Horizon::NONE })?;
-        }
-        Ok(())
+        self.advance_to_either(f64::INFINITY, collisions_per_particle)
     }
 
-    /// Goes on to this time.
-    pub(crate) fn advance_to_time(&mut self, time: f64) {
-        while self.gas.time() < time {
-            self.step(Horizon { time, ..Horizon::NONE }).unwrap_or_else(|error| panic!("{error}"));
+    /// Goes on to this time or to so many collisions per particle, whichever comes first.
+    pub(crate) fn advance_to_either(&mut self, time: f64, collisions_per_particle: f64) -> Result<(), EngineError> {
+        let is_reached = |done: f64| done >= collisions_per_particle;
+        while !is_reached(self.totals.collisions_per_particle) && self.gas.time() < time {
+            let collisions =
+                self.totals.collisions_until(self.gas.len(), collisions_per_particle, is_reached);
+            self.step(Horizon { collisions, time })?;
         }
+        Ok(())
     }
 
     fn step(&mut self, horizon: Horizon) -> Result<(), EngineError> {
@@ -106,11 +104,6 @@ impl<V: Space> Trial<V> {
         let report = self.engine.step(&mut self.gas, horizon, &mut NoLaps)?;
         self.totals.add(&report, grains);
         Ok(())
-    }
-
-    /// Forgets what was counted.
-    pub(crate) fn forget(&mut self) {
-        self.totals = Totals::default();
     }
 
     /// Granular temperature.
