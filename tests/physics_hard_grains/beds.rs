@@ -82,25 +82,33 @@ fn is_heap(end: &End) -> bool {
 
 #[test]
 fn grains_poured_one_by_one_form_a_small_heap() {
-    let end = run(&built_in("heap", &["source.count=80", "run.rest=40.0"], 1.0));
-    assert!(end.grains == 80 && is_heap(&end), "{end:?}");
-    // Elastic grains run away.
-    let elastic = run(&built_in("heap", &["source.count=80", "run.rest=40.0", "particles.restitution=0.99"], 1.0));
-    assert!(!is_heap(&elastic), "{elastic:?}");
+    let end = run(&built_in("heap", &["source.count=150", "run.rest=20.0"], 1.0));
+    assert!(end.grains == 150 && is_heap(&end), "{end:?}");
 }
 
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn grains_poured_one_by_one_form_a_heap() {
     let end = run(&built_in("heap", &["source.count=250", "run.rest=50.0"], 1.0));
-    assert!(end.grains == 250 && is_heap(&end), "{end:?}");
+    assert!(end.grains == 250 && end.slope > 0.3 && is_heap(&end), "{end:?}");
 }
 
+/// Nearly elastic grains run away from where they are poured.
+#[test]
+fn elastic_grains_form_no_heap() {
+    let end = run(&built_in("heap", &["source.count=80", "run.rest=40.0", "particles.restitution=0.99"], 1.0));
+    assert!(!is_heap(&end), "{end:?}");
+}
+
+/// Free fall from the top of the box takes 0.09; what lies still bounces ever more often, so that a longer rest costs a lot.
 #[test]
 fn grains_settle() {
-    let settled = built_in("sedimentation", &[], (9.81 * 1e-3_f64).sqrt());
+    let settled = built_in("sedimentation", &["run.time=0.4"], (9.81 * 1e-3_f64).sqrt());
     let end = run(&settled);
     assert_eq!(end.grains, settled.count as usize);
+    // Energy to lift a grain by its diameter, and five layers of grains.
+    assert!(end.energy < 1e-3 * 9.81 * 1e-3, "{end:?}");
+    assert!((2.0e-3..2.6e-3).contains(&end.height), "{end:?}");
 }
 
 /// 100 grains between smooth walls, ten diameters apart, on a floor that vibrates with this peak speed.
@@ -121,4 +129,5 @@ fn vibrated(speed: f64) -> End {
 fn a_faster_floor_lifts_a_bed_higher() {
     let heights = [0.5, 2.0, 4.0].map(|speed| vibrated(speed).height);
     println!("heights {heights:.2?}");
+    assert!(heights.is_sorted_by(|slow, fast| 1.3 * slow < *fast));
 }

@@ -51,6 +51,25 @@ fn check<V: Space>(restitution: f64, number: u64, tolerance: f64) {
 }
 
 #[test]
+fn experiment() {
+    for (count, number, kind) in [(8000, 60, "event-driven"), (2000, 240, "dsmc"), (500, 960, "event-driven")] {
+        let found = replicas(number, |seed| {
+            let text = periodic::<DVec2>(count, VOLUME_FRACTION, 0.9);
+            let text = text.replace("\"event-driven\"", &format!("\"{kind}\"\ncell_size = 100000.0"));
+            let mut trial = Trial::<DVec2>::equilibrated(&text, seed, 2.0);
+            let mut sum = 0.0;
+            for tau in WINDOW[0]..WINDOW[1] {
+                trial.advance_to(f64::from(tau));
+                sum += sonine_coefficient(&trial.gas);
+            }
+            sum / f64::from(WINDOW[1] - WINDOW[0])
+        });
+        let estimate = grainflow::statistics::average(&found).unwrap();
+        println!("{kind} N = {count}: {estimate:?}");
+    }
+}
+
+#[test]
 fn velocities_have_their_fourth_moment() {
     check::<DVec2>(0.9, 80, 0.006);
     check::<DVec3>(0.9, 80, 0.005);
