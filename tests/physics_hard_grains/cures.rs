@@ -44,7 +44,9 @@ fn history(restitution: f64, cure: &str, taus: &[f64]) -> History {
     let (mut at_taus, mut at_times, mut time) = (Vec::new(), Vec::new(), FIRST_TIME);
     for &tau in taus {
         while trial.totals.collisions_per_particle < tau {
-            trial.advance_to_either(time, tau).unwrap_or_else(|error| panic!("r = {restitution} {cure}: {error}"));
+            trial
+                .advance_to_either(time, tau)
+                .unwrap_or_else(|error| panic!("r = {restitution} {cure}: {error}"));
             if trial.gas.time() >= time {
                 at_times.push(trial.temperature());
                 time *= 2.0;
@@ -73,16 +75,26 @@ fn spreads(restitution: f64, taus: &[f64]) -> (Vec<f64>, Vec<f64>) {
         all.iter().copied().fold(0.0, f64::max) / all.iter().copied().fold(f64::INFINITY, f64::min)
     };
     let times = runs.iter().map(|run| run.at_times.len()).min().unwrap();
-    let by_tau: Vec<f64> = (0..taus.len()).map(|k| spread(runs.each_ref().map(|run| run.at_taus[k]))).collect();
+    let by_tau: Vec<f64> =
+        (0..taus.len()).map(|k| spread(runs.each_ref().map(|run| run.at_taus[k]))).collect();
     let by_time: Vec<f64> = (0..times).map(|k| spread(runs.each_ref().map(|run| run.at_times[k]))).collect();
-    println!("r = {restitution}: largest over smallest T at τ = {taus:?}: {by_tau:.3?}, at t = 10, 20, 40 …: {by_time:.3?}");
+    println!(
+        "r = {restitution}: largest over smallest T at τ = {taus:?}: {by_tau:.3?}, at t = 10, 20, 40 …: {by_time:.3?}"
+    );
     (by_tau, by_time)
+}
+
+/// Cures agree at equal times, however late: clusters collide within themselves as often as the cure lets them, so
+/// that equal numbers of collisions mean equal times as long as the gas is homogeneous only.
+fn agree(spreads: &[f64], most: f64) -> bool {
+    !spreads.is_empty() && spreads.iter().all(|&spread| spread < most)
 }
 
 #[test]
 fn cures_agree_for_a_while() {
     for restitution in [0.95, 0.70] {
-        spreads(restitution, &[10.0, 50.0, 150.0]);
+        let (by_tau, by_time) = spreads(restitution, &[10.0, 50.0, 150.0]);
+        assert!(agree(&by_tau[..2], 1.1) && agree(&by_time, 1.5));
     }
 }
 
@@ -90,7 +102,8 @@ fn cures_agree_for_a_while() {
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn cures_agree_to_800_collisions_per_particle() {
     for restitution in [0.95, 0.70] {
-        spreads(restitution, &[10.0, 50.0, 100.0, 200.0, 400.0, 800.0]);
+        let (by_tau, by_time) = spreads(restitution, &[10.0, 50.0, 100.0, 200.0, 400.0, 800.0]);
+        assert!(agree(&by_tau[..2], 1.1) && agree(&by_time, 1.5));
     }
 }
 
@@ -115,7 +128,10 @@ fn a_collapse_ends_the_program_with_a_word_and_a_readable_log() {
     let said = String::from_utf8(output.stderr).unwrap();
     println!("{said}");
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("inelastic collapse at t = ") && said.contains("collapse = { contact_time = "), "{said}");
+    assert!(
+        said.contains("inelastic collapse at t = ") && said.contains("collapse = { contact_time = "),
+        "{said}"
+    );
     let mut logs = Vec::new();
     for entry in std::fs::read_dir(folder.path()).unwrap() {
         let path = entry.unwrap().path().join("log.mcap");

@@ -41,6 +41,10 @@ fn mean_coefficient<V: Space>(restitution: f64, seed: u64) -> f64 {
 }
 
 /// 1 + a₂ within `tolerance` of 1 + c*/2.
+///
+/// The law is one of first order, and itself off: at r = 0.9 in 2D, where c*/2 = −0.0269, a gas without space (dsmc,
+/// one cell, 240 times 2000 grains) has −0.0293 ± 0.0005, exact dynamics −0.0291 ± 0.0004 (400 times 2000 grains)
+/// and −0.0280 ± 0.0004 (60 times 8000).
 fn check<V: Space>(restitution: f64, number: u64, tolerance: f64) {
     let theory = 0.5 * sonine_c_star::<V>(restitution);
     let found = replicas(number, |seed| 1.0 + mean_coefficient::<V>(restitution, seed));
@@ -51,35 +55,16 @@ fn check<V: Space>(restitution: f64, number: u64, tolerance: f64) {
 }
 
 #[test]
-fn experiment() {
-    for (count, number, kind) in [(8000, 60, "event-driven"), (2000, 240, "dsmc"), (500, 960, "event-driven")] {
-        let found = replicas(number, |seed| {
-            let text = periodic::<DVec2>(count, VOLUME_FRACTION, 0.9);
-            let text = text.replace("\"event-driven\"", &format!("\"{kind}\"\ncell_size = 100000.0"));
-            let mut trial = Trial::<DVec2>::equilibrated(&text, seed, 2.0);
-            let mut sum = 0.0;
-            for tau in WINDOW[0]..WINDOW[1] {
-                trial.advance_to(f64::from(tau));
-                sum += sonine_coefficient(&trial.gas);
-            }
-            sum / f64::from(WINDOW[1] - WINDOW[0])
-        });
-        let estimate = grainflow::statistics::average(&found).unwrap();
-        println!("{kind} N = {count}: {estimate:?}");
-    }
-}
-
-#[test]
 fn velocities_have_their_fourth_moment() {
-    check::<DVec2>(0.9, 80, 0.006);
-    check::<DVec3>(0.9, 80, 0.005);
+    check::<DVec2>(0.9, 80, 0.008);
+    check::<DVec3>(0.9, 80, 0.008);
 }
 
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
-fn velocities_have_their_fourth_moment_to_two_thousandths() {
+fn velocities_have_their_fourth_moment_closely() {
     for restitution in [0.9, 0.7] {
-        check::<DVec2>(restitution, 400, 0.002);
-        check::<DVec3>(restitution, 400, 0.002);
+        check::<DVec2>(restitution, 400, 0.005);
+        check::<DVec3>(restitution, 400, 0.005);
     }
 }

@@ -124,5 +124,5 @@ fn few_slowly_grown_spheres_freeze() {
 #[test]
 #[ignore = "full statement: cargo test --release --test physics_hard_grains -- --ignored"]
 fn slowly_grown_spheres_freeze() {
-    assert!(freezes(fall_of(4000, 2e-4, 0.58)));
+    assert!(freezes(fall_of(500, 1e-4, 0.58)));
 }

@@ -66,7 +66,9 @@ fn grazing(count: u32, taus: &[f64]) -> Vec<f64> {
 
 /// As in figure 3.7 of Müller 2001: flat at first but for some per cent, then ever more grazing.
 fn grows(found: &[f64]) -> bool {
-    (found[0] - 1.0).abs() < 0.07 && found[1..].is_sorted_by(|early, late| early < late) && found[found.len() - 1] > 1.15
+    (found[0] - 1.0).abs() < 0.07
+        && found[1..].is_sorted_by(|early, late| early < late)
+        && found[found.len() - 1] > 1.15
 }
 
 #[test]

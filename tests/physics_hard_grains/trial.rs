@@ -41,7 +41,8 @@ pub(crate) struct Trial<V: Vector> {
 pub(crate) fn scenario<V: Space>(text: &str, seed: u64) -> Scenario<V> {
     let overrides = Overrides { seed: Some(seed), ..Overrides::default() };
     let scenario = grainflow::scenario::parse("made up", text, &overrides);
-    V::of(scenario.unwrap_or_else(|error| panic!("{error}"))).expect("the scenario has the dimension of its test")
+    V::of(scenario.unwrap_or_else(|error| panic!("{error}")))
+        .expect("the scenario has the dimension of its test")
 }
 
 /// The text of a periodic event-driven gas at temperature 1: `count` grains of unit diameter and mass.
@@ -60,8 +61,7 @@ impl<V: Space> Trial<V> {
     pub(crate) fn new(text: &str, seed: u64) -> Self {
         let scenario = scenario::<V>(text, seed);
         let gas = initial::build(&scenario, None).unwrap_or_else(|error| panic!("{error}"));
-        let engine =
-            assembly::engine(&scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
+        let engine = assembly::engine(&scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
         Trial { scenario, gas, totals: Totals::default(), engine }
     }
 
@@ -89,7 +89,11 @@ impl<V: Space> Trial<V> {
     }
 
     /// Goes on to this time or to so many collisions per particle, whichever comes first.
-    pub(crate) fn advance_to_either(&mut self, time: f64, collisions_per_particle: f64) -> Result<(), EngineError> {
+    pub(crate) fn advance_to_either(
+        &mut self,
+        time: f64,
+        collisions_per_particle: f64,
+    ) -> Result<(), EngineError> {
         let is_reached = |done: f64| done >= collisions_per_particle;
         while !is_reached(self.totals.collisions_per_particle) && self.gas.time() < time {
             let collisions =

@@ -52,7 +52,9 @@ impl<V: Vector> World<V> {
             return None;
         }
         match &self.lists {
-            None if collisions > COLLISIONS_PER_CROSSING * crossings + grains as f64 => Some(self.with_lists()),
+            None if collisions > COLLISIONS_PER_CROSSING * crossings + grains as f64 => {
+                Some(self.with_lists())
+            }
             Some(_) if collisions < COLLISIONS_PER_RENEWAL * crossings => Some(self.with_cells()),
             _ => None,
         }
@@ -73,11 +75,7 @@ impl<V: Vector> World<V> {
         // Only one image of a neighbour may be near: three cells must fit along each periodic axis.
         let wide = (0..V::DIMENSION)
             .all(|axis| !self.laws.boundary.is_periodic(axis) || self.laws.size[axis] > 3.01 * reach);
-        if wide {
-            Arrangement { side: reach, half_width: Some(half_width) }
-        } else {
-            self.with_cells()
-        }
+        if wide { Arrangement { side: reach, half_width: Some(half_width) } } else { self.with_cells() }
     }
 
     /// Share of the box that the grains fill at their full size.

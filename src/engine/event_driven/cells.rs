@@ -147,8 +147,12 @@ impl<V: Vector> Cells<V> {
         let rows = if V::DIMENSION == 3 { 3 } else { 1 };
         for layer in 0..rows {
             for line in 0..3 {
-                let step = (line * self.strides[1]).wrapping_sub(self.strides[1])
-                    .wrapping_add(if rows == 3 { (layer * self.strides[2]).wrapping_sub(self.strides[2]) } else { 0 });
+                let step =
+                    (line * self.strides[1]).wrapping_sub(self.strides[1]).wrapping_add(if rows == 3 {
+                        (layer * self.strides[2]).wrapping_sub(self.strides[2])
+                    } else {
+                        0
+                    });
                 if let Some(head) = self.heads.get(cell.wrapping_add(step) as usize) {
                     fetch(head);
                 }
@@ -163,7 +167,9 @@ impl<V: Vector> Cells<V> {
         let mut rows = [Row { places: [(0, 0.0); 3], number: 1 }; 3];
         for axis in 0..V::DIMENSION {
             rows[axis] = match only {
-                Some(face) if face.axis() == axis => self.row(at[axis], axis, [face.upper, !face.upper], false),
+                Some(face) if face.axis() == axis => {
+                    self.row(at[axis], axis, [face.upper, !face.upper], false)
+                }
                 _ => self.row(at[axis], axis, [true, true], true),
             };
         }

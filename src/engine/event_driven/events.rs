@@ -54,7 +54,8 @@ impl<V: Vector> World<V> {
         let mut transferred = match (self.laws.roughness, &mut self.spins) {
             (Some(roughness), Some(all)) => {
                 let mut spins = [all[row as usize], all[partner as usize]];
-                let transferred = meeting.collide_rough(&pair, roughness, restitution, velocities, &mut spins);
+                let transferred =
+                    meeting.collide_rough(&pair, roughness, restitution, velocities, &mut spins);
                 (all[row as usize], all[partner as usize]) = (spins[0], spins[1]);
                 transferred
             }
@@ -161,7 +162,8 @@ impl<V: Vector> World<V> {
         let inward = if face.upper { -1.0 } else { 1.0 };
         let before = self.bodies[row as usize].velocity;
         // The wall moves, and a growing grain meets it sooner.
-        let surface = self.walls.speed(face, self.now) + inward * 0.5 * grain.diameter * self.laws.growth.rate;
+        let surface =
+            self.walls.speed(face, self.now) + inward * 0.5 * grain.diameter * self.laws.growth.rate;
         let normal = before[axis] - surface;
         if inward * normal < 0.0 {
             let wait = self.time_since_collision(row);
@@ -173,7 +175,8 @@ impl<V: Vector> World<V> {
                 let mut random = self.stream(row, Phase::Rotation);
                 let frame = V::along(axis, surface);
                 let mut turned = (after - frame).turns(largest, &mut random).into_iter();
-                after = turned.find(|turned| inward * turned[axis] > 0.0).map_or(after, |turned| turned + frame);
+                after =
+                    turned.find(|turned| inward * turned[axis] > 0.0).map_or(after, |turned| turned + frame);
                 cured = true;
             }
             self.bodies[row as usize].velocity = after;

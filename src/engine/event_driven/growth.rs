@@ -118,12 +118,12 @@ mod tests {
     /// Points on a square lattice that grow to `volume_fraction`.
     fn dense<V: Vector>(per_axis: u32, volume_fraction: f64) -> (Gas<V>, Result<(), GrowthError>) {
         let number = per_axis.pow(V::DIMENSION as u32);
-        let side = libm::pow(
-            f64::from(number) * V::sphere_volume(1.0) / volume_fraction,
-            1.0 / V::DIMENSION as f64,
-        );
+        let side =
+            libm::pow(f64::from(number) * V::sphere_volume(1.0) / volume_fraction, 1.0 / V::DIMENSION as f64);
         let place = |k: u32| {
-            V::from_fn(|axis| (f64::from(k / per_axis.pow(axis as u32) % per_axis) + 0.5) * side / f64::from(per_axis))
+            V::from_fn(|axis| {
+                (f64::from(k / per_axis.pow(axis as u32) % per_axis) + 0.5) * side / f64::from(per_axis)
+            })
         };
         let streams = Streams::new(4).at(0, Phase::InitialVelocities);
         let velocity = |k: u32| {
@@ -132,7 +132,8 @@ mod tests {
         };
         let grid = Grid::new(V::ZERO, V::from_fn(|_| side), &[4; 3], &[true; 3]);
         let grain = Grain { diameter: 0.5, mass: 1.0 };
-        let mut gas = Gas::new(grid, grain, (0..number).map(place).collect(), (0..number).map(velocity).collect());
+        let mut gas =
+            Gas::new(grid, grain, (0..number).map(place).collect(), (0..number).map(velocity).collect());
         let grown = grow(&mut gas, V::from_fn(|_| side), &Boundary::periodic(), 1.0, 3);
         (gas, grown)
     }

@@ -93,7 +93,8 @@ impl<V: Vector> Lists<V> {
                 let apart = self.anchors[other as usize] + shift - anchor;
                 let gap = V::from_fn(|axis| (apart[axis].abs() - reach).max(0.0));
                 let contact = distance(row, other);
-                if other != row && gap.length_squared() <= contact * contact && !self.of(row).contains(&other) {
+                if other != row && gap.length_squared() <= contact * contact && !self.of(row).contains(&other)
+                {
                     self.enter(row, other);
                     self.enter(other, row);
                 }

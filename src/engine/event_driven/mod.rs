@@ -148,6 +148,12 @@ impl<V: Vector> EventDriven<V> {
     /// TEMP
     pub fn describe(&self) -> String {
         let w = self.world.as_ref().unwrap();
-        format!("{:?} year {:.3} lists {} cells {:?}", w.calendar.usage(), w.calendar.year(), w.lists.is_some(), w.cells.counts())
+        format!(
+            "{:?} year {:.3} lists {} cells {:?}",
+            w.calendar.usage(),
+            w.calendar.year(),
+            w.lists.is_some(),
+            w.cells.counts()
+        )
     }
 }

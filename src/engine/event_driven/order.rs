@@ -49,7 +49,8 @@ mod tests {
     fn bits_stand_apart() {
         for number in [0, 1, 2, 3, 77, 0xffff, 0x1f_ffff] {
             for gap in [2, 3] {
-                let expected = (0..21).filter(|k| number >> k & 1 == 1).fold(0, |sum, k| sum | 1_u64 << (gap * k));
+                let expected =
+                    (0..21).filter(|k| number >> k & 1 == 1).fold(0, |sum, k| sum | 1_u64 << (gap * k));
                 assert_eq!(spread(number, gap as usize), expected, "{number} {gap}");
             }
         }

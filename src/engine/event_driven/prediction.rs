@@ -112,7 +112,9 @@ impl<V: Vector> World<V> {
     #[inline(always)]
     fn consider(&self, row: u32, other: u32, dx: V, dv: V, scale: f64, best: &mut Contact) {
         let distance = self.contact_distance(row, other);
-        let Some(after) = pair_contact(dx, dv, distance * scale, distance * self.laws.growth.rate) else { return };
+        let Some(after) = pair_contact(dx, dv, distance * scale, distance * self.laws.growth.rate) else {
+            return;
+        };
         let time = self.now + after;
         let ids = &self.ids;
         // Between equal times the smaller identity decides, not the order of memory.
@@ -135,8 +137,13 @@ impl<V: Vector> World<V> {
         let mut plan = Plan { time: contact.time, contact, cell, event };
         let gravity = self.laws.gravity;
         for axis in 0..V::DIMENSION {
-            let (after, upper) =
-                leave_interval(body.position[axis], low[axis], high[axis], body.velocity[axis], gravity[axis]);
+            let (after, upper) = leave_interval(
+                body.position[axis],
+                low[axis],
+                high[axis],
+                body.velocity[axis],
+                gravity[axis],
+            );
             let time = self.now + after;
             if time < plan.time {
                 (plan.time, plan.event) = (time, Event::Crossing(Face::new(axis, upper)));

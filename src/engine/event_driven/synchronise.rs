@@ -56,7 +56,8 @@ impl<V: Vector> World<V> {
     /// Names the first grain that is not where a number can say.
     fn not_finite(&self, now: f64, space: &SortSpace<V>) -> EngineError {
         let columns = &space.spare;
-        let lost = |row: &usize| !(columns.positions[*row].is_finite() && columns.velocities[*row].is_finite());
+        let lost =
+            |row: &usize| !(columns.positions[*row].is_finite() && columns.velocities[*row].is_finite());
         let row = (0..columns.len()).find(lost).unwrap_or(0);
         EngineError::NotFinite {
             id: columns.ids[row],

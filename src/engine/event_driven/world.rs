@@ -59,7 +59,8 @@ impl<V: Vector> World<V> {
     /// The grains of `gas`, all at its time.
     pub(super) fn new(laws: &Laws<V>, structure: Structure, gas: &Gas<V>) -> Self {
         let columns = gas.columns();
-        let body = |(&position, &velocity): (&V, &V)| Body { position, velocity, next: NONE, ..Body::default() };
+        let body =
+            |(&position, &velocity): (&V, &V)| Body { position, velocity, next: NONE, ..Body::default() };
         let grains = columns.len();
         let spins = || columns.spins.clone().unwrap_or_else(|| vec![V::Spin::default(); grains]);
         let mut world = World {
@@ -178,7 +179,11 @@ impl<V: Vector> World<V> {
         for row in new {
             let (position, velocity) = (columns.positions[row], columns.velocities[row]);
             let species = columns.species.as_ref().map_or(0, |species| species[row]);
-            self.add(Body { position, velocity, time: self.now, collisions: 0, next: NONE }, columns.ids[row], species);
+            self.add(
+                Body { position, velocity, time: self.now, collisions: 0, next: NONE },
+                columns.ids[row],
+                species,
+            );
         }
         self.next_id = gas.next_id();
     }
