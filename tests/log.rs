@@ -334,6 +334,24 @@ fn any_vector<V: Vector>() -> impl Strategy<Value = V> {
     [any_bits(), any_bits(), any_bits()].prop_map(|components| V::from_fn(|axis| components[axis]))
 }
 
+/// Position, velocity, identity, spin, of which as much is taken as the space has, and species.
+type AnyGrain<V> = (V, V, u32, DVec3, u8);
+
+/// Writes `grains` into `columns`, with spins and species if these columns are there.
+fn fill<V: Vector>(columns: &mut Columns<V>, grains: Vec<AnyGrain<V>>) {
+    for (row, (position, velocity, id, spin, species)) in grains.into_iter().enumerate() {
+        columns.insert(row, position, velocity, id);
+        if let Some(spins) = &mut columns.spins {
+            let components = spin.to_array();
+            let width = spins[row].as_ref().len();
+            spins[row].as_mut().copy_from_slice(&components[..width]);
+        }
+        if let Some(all) = &mut columns.species {
+            all[row] = species;
+        }
+    }
+}
+
 fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedState<'static, V>> {
     let grain = (any_vector::<V>(), any_vector::<V>(), any::<u32>(), any_vector::<DVec3>(), any::<u8>());
     let columns = (prop::collection::vec(grain, 0..20), any::<bool>(), any::<bool>());
@@ -345,17 +363,7 @@ fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedStat
             let mut state = SavedState::<'static, V> { samples, memories, ..Default::default() };
             state.columns.to_mut().spins = rough.then(Vec::new);
             state.columns.to_mut().species = mixed.then(Vec::new);
-            for (row, (position, velocity, id, spin, species)) in grains.into_iter().enumerate() {
-                state.columns.to_mut().insert(row, position, velocity, id);
-                if let Some(spins) = &mut state.columns.to_mut().spins {
-                    let components = spin.to_array();
-                    let width = spins[row].as_ref().len();
-                    spins[row].as_mut().copy_from_slice(&components[..width]);
-                }
-                if let Some(all) = &mut state.columns.to_mut().species {
-                    all[row] = species;
-                }
-            }
+            fill(state.columns.to_mut(), grains);
             [state.time, state.compensation, state.engine.largest_speed, state.engine.collision_rate, ..] =
                 floats;
             [

@@ -31,10 +31,9 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     let units = head::units(root);
 
     let count = count(root, &particles, size);
-    let restitution = particles.restitution;
     // An unknown ν or r changes the restitution of walls, not whether they are right.
     let volume_fraction = volume_fraction(count, &particles, size).unwrap_or(0.0);
-    let typical = restitution.map_or(1.0, RestitutionLaw::typical);
+    let typical = particles.restitution.map_or(1.0, RestitutionLaw::typical);
     let boundary = walls::resolve(axes, typical, volume_fraction);
     let story = Story {
         gravity: head.gravity,
@@ -46,36 +45,41 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
         run,
     };
     let consistent = consistency::check(root, &story);
-    let able = engine.kind.map_or(Some(()), |kind| consistency::abilities(root, kind, &particles, run));
     let initial = resolve_initial(root, initial, &story);
-    let grid = cut(root, &engine, &particles, &story);
-    let (grid_origin, grid_size, cells) = grid?;
-    consistent.and(able)?;
-    let (matter, count) = (particles.matter?, count?);
-    let scenario = Scenario {
-        name: name.to_owned(),
-        title: head.title?,
-        source_text,
-        seed: head.seed?,
-        gravity: head.gravity?,
-        engine: resolve_engine(engine, typical)?,
-        size: size?,
-        grid_origin,
-        grid_size,
-        cells,
-        boundary: boundary?,
-        grain: *matter.kinds.first()?,
-        species: matter.species(),
-        species_counts: matter.species_counts(count),
-        roughness: particles.roughness?,
-        restitution: restitution?,
-        count,
-        initial: initial?,
-        source: source?,
-        run: run?,
-        record: record?,
-        units: units?,
-    };
+    let able = engine.kind.map_or(Some(()), |kind| consistency::abilities(root, kind, &particles, run));
+    let (grid_origin, grid_size, cells) = cut(root, &engine, &particles, &story)?;
+    let (matter, count) = (consistent.and(able).and(particles.matter)?, count?);
+    checked(
+        root,
+        Scenario {
+            name: name.to_owned(),
+            title: head.title?,
+            source_text,
+            seed: head.seed?,
+            gravity: head.gravity?,
+            engine: resolve_engine(engine, typical)?,
+            size: size?,
+            grid_origin,
+            grid_size,
+            cells,
+            boundary: boundary?,
+            grain: *matter.kinds.first()?,
+            species: matter.species(),
+            species_counts: matter.species_counts(count),
+            roughness: particles.roughness?,
+            restitution: particles.restitution?,
+            count,
+            initial: initial?,
+            source: source?,
+            run: run?,
+            record: record?,
+            units: units?,
+        },
+    )
+}
+
+/// What can only be checked on a whole scenario.
+fn checked<V: Vector>(root: &Section<'_>, scenario: Scenario<V>) -> Option<Scenario<V>> {
     pace::check_fixed_step(root, &scenario)?;
     state::check_lattice(root, &scenario)?;
     Some(scenario)

@@ -63,7 +63,7 @@ fn check<V: Space>(count: u32, volume_fraction: f64, collisions: f64, theory: f6
 #[test]
 fn fluids_have_their_pressure() {
     check::<DVec3>(1000, 0.4, 1e6, spheres(0.4), 0.008);
-    check::<DVec2>(1024, 0.5, 1e6, disks(0.5), 0.004);
+    check::<DVec2>(1024, 0.5, 1.6e6, disks(0.5), 0.004);
 }
 
 #[test]

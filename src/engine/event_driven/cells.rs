@@ -28,6 +28,8 @@ pub(super) struct Cells<V> {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Layers {
     all: Vec<u32>,
+    /// Those of `all` that lie straight across the first axis: their neighbours along it share their memory.
+    lines: Vec<u32>,
     /// `[axis][side]`.
     sides: [[Vec<u32>; 2]; 3],
 }
@@ -97,12 +99,13 @@ impl<V: Vector> Cells<V> {
 
     #[inline(always)]
     fn coordinates(&self, cell: u32) -> [u32; 3] {
-        let row = cell / self.counts[0];
-        if V::DIMENSION == 2 {
-            return [cell - row * self.counts[0], row, 0];
+        let (mut coordinates, mut rest) = ([0; 3], cell);
+        for axis in (1..V::DIMENSION).rev() {
+            coordinates[axis] = rest / self.strides[axis];
+            rest -= coordinates[axis] * self.strides[axis];
         }
-        let layer = row / self.counts[1];
-        [cell - row * self.counts[0], row - layer * self.counts[1], layer]
+        coordinates[0] = rest;
+        coordinates
     }
 
     /// Lower and upper corner of `cell`; infinite where the box has a face that is no cell's [length].
@@ -144,18 +147,9 @@ impl<V: Vector> Cells<V> {
     /// Sends for the memory of the cells around `cell`.
     #[inline]
     pub(super) fn send_for(&self, cell: u32) {
-        let rows = if V::DIMENSION == 3 { 3 } else { 1 };
-        for layer in 0..rows {
-            for line in 0..3 {
-                let step =
-                    (line * self.strides[1]).wrapping_sub(self.strides[1]).wrapping_add(if rows == 3 {
-                        (layer * self.strides[2]).wrapping_sub(self.strides[2])
-                    } else {
-                        0
-                    });
-                if let Some(head) = self.heads.get(cell.wrapping_add(step) as usize) {
-                    fetch(head);
-                }
+        for &step in &self.inside.lines {
+            if let Some(head) = self.heads.get(cell.wrapping_add(step) as usize) {
+                fetch(head);
             }
         }
     }
@@ -254,6 +248,9 @@ impl Layers {
                 let step = |axis: usize| (at[axis] as u32).wrapping_mul(strides[axis]);
                 let sum = step(0).wrapping_add(step(1)).wrapping_add(step(2));
                 layers.all.push(sum);
+                if x == 0 {
+                    layers.lines.push(sum);
+                }
                 for (sides, at) in layers.sides.iter_mut().zip(at) {
                     match at {
                         -1 => sides[0].push(sum),

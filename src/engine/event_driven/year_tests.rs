@@ -11,9 +11,10 @@ use crate::matter::grid::Grid;
 use crate::random::{Phase, Streams};
 use glam::DVec2;
 
-/// Discs on a square lattice of this spacing, with the velocities of a Maxwell gas.
+/// Discs on a triangular lattice of this spacing, an even number on each axis, with the velocities of a Maxwell gas.
 fn world(per_axis: u32, spacing: f64, restitution: f64, cure: Cure, structure: Structure) -> World<DVec2> {
-    let size = DVec2::splat(f64::from(per_axis) * spacing);
+    let apart = DVec2::new(1.0, 0.75_f64.sqrt()) * spacing;
+    let size = f64::from(per_axis) * apart;
     let grain = Grain { diameter: 1.0, mass: 1.0 };
     let laws = Laws {
         grain,
@@ -30,7 +31,10 @@ fn world(per_axis: u32, spacing: f64, restitution: f64, cure: Cure, structure: S
     };
     let streams = laws.streams.at(0, Phase::InitialVelocities);
     let number = per_axis * per_axis;
-    let place = |k: u32| DVec2::new(f64::from(k % per_axis) + 0.5, f64::from(k / per_axis) + 0.5) * spacing;
+    let place = |k: u32| {
+        let (column, row) = (k % per_axis, k / per_axis);
+        DVec2::new(f64::from(column) + 0.25 + 0.5 * f64::from(row % 2), f64::from(row) + 0.5) * apart
+    };
     let velocity = |k: u32| {
         let mut random = streams.stream(u64::from(k));
         DVec2::new(random.gaussian(), random.gaussian())
@@ -53,12 +57,12 @@ fn go_on(world: &mut World<DVec2>, events: u64) -> Option<Usage> {
 }
 
 /// While the gas cools its pages stay as full as they should be, and few events are written on the page that is open:
-/// year after year its length follows. Held to it for twenty years, in which the gas stays about even; later, in
-/// clusters, grains collide again within the page that is open, which is printed.
+/// year after year its length follows. Late entries are bounded for twenty years, in which the gas stays about even;
+/// later, in clusters, grains collide again within the page that is open.
 #[test]
 fn pages_stay_full_as_a_gas_cools() {
     let cure = Cure { contact_time: Some(1e-4), ..Cure::default() };
-    let mut world = world(71, 1.8, 0.7, cure, Structure::Automatic);
+    let mut world = world(70, 1.8, 0.7, cure, Structure::Automatic);
     let start = temperature(&world);
     let mut years = 0;
     while years < 20 || (temperature(&world) > 1e-8 * start && world.events.all < 10_000_000) {
@@ -67,10 +71,9 @@ fn pages_stay_full_as_a_gas_cools() {
         let per_page = usage.entries as f64 / usage.opened as f64;
         let late = usage.late as f64 / (usage.entries + usage.late) as f64;
         let cooled = temperature(&world) / start;
-        println!("year {years}, T/T0 = {cooled:.1e}: {per_page:.1} entries on a page, late {late:.3}");
-        assert!(years > 20 || (5.0..200.0).contains(&per_page), "year {years}: {per_page}");
+        assert!(years > 20 || (30.0..400.0).contains(&per_page), "year {years}: {per_page}");
         // The first year, of a lattice, is planned by a guess.
-        assert!(years == 1 || years > 20 || late < 0.1, "year {years}: {late}");
+        assert!(years == 1 || years > 20 || late < 0.2, "year {years}: {late}");
         assert!(world.events.all < 100_000_000, "the year does not follow: T/T0 = {cooled}");
     }
 }
@@ -86,26 +89,25 @@ fn the_order_in_memory_is_renewed() {
         last = world.pace.crossings_since_order;
     }
     let crossings = world.events.crossings as f64 / world.bodies.len() as f64;
-    println!("{renewals} renewals of the order in {crossings:.0} crossings of each grain");
     assert!(f64::from(renewals) > crossings / 20.0 && f64::from(renewals) <= crossings / CROSSINGS_PER_ORDER);
 }
 
-/// A dense gas begins with lists, a dilute one with cells; a gas that clusters or loosens changes over by its counts.
+/// Discs in a crystal begin with lists, a gas with cells; matter that clusters or loosens changes over by its counts.
 #[test]
 fn the_structure_follows_from_counts() {
-    for (spacing, lists) in [(1.05, true), (1.8, false)] {
+    for (spacing, lists) in [(1.03, true), (1.8, false)] {
         let mut world = world(30, spacing, 1.0, Cure::default(), Structure::Automatic);
         assert_eq!(world.lists.is_some(), lists);
         for _ in 0..100 {
             go_on(&mut world, 2000);
         }
         assert_eq!(world.lists.is_some(), lists, "{spacing} after many years");
-        // Counts as those of a year in the other kind of matter turn the choice round, and no others.
+        // Counts as those of a year in the other kind of matter turn the choice round; others do not.
         let grains = world.bodies.len() as u64;
-        let (collisions, crossings) = if lists { (grains, 2 * grains) } else { (9 * grains, grains) };
-        (world.pace.collisions, world.pace.crossings) = (crossings, collisions);
+        let (turn, stay) = if lists { (3, 5) } else { (42, 40) };
+        (world.pace.collisions, world.pace.crossings) = (stay * grains, grains);
         assert_eq!(world.next_arrangement(), None);
-        (world.pace.collisions, world.pace.crossings) = (collisions, crossings);
+        (world.pace.collisions, world.pace.crossings) = (turn * grains, grains);
         let next = world.next_arrangement().unwrap();
         assert_eq!(next.half_width.is_some(), !lists);
         world.turn_year(world.now.max(1e-9));
