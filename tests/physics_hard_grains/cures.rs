@@ -32,7 +32,10 @@ fn text(restitution: f64, cure: &str) -> String {
 /// The first time of a history; each of the others is twice the one before.
 const FIRST_TIME: f64 = 10.0;
 
-/// T/T₀ at each of `taus` collisions per particle, and at each of the times up to the last of them.
+/// Where a cure elastic below 10⁻⁵ is one: thermal speeds stay above a hundred times that.
+const COLDEST: f64 = 1e-6;
+
+/// T/T₀ at each of `taus` collisions per particle, and at each of the times at which it is above [`COLDEST`].
 struct History {
     at_taus: Vec<f64>,
     at_times: Vec<f64>,
@@ -48,7 +51,7 @@ fn history(restitution: f64, cure: &str, taus: &[f64]) -> History {
                 .advance_to_either(time, tau)
                 .unwrap_or_else(|error| panic!("r = {restitution} {cure}: {error}"));
             if trial.gas.time() >= time {
-                at_times.push(trial.temperature());
+                at_times.extend(Some(trial.temperature()).filter(|&temperature| temperature > COLDEST));
                 time *= 2.0;
             }
         }
@@ -84,7 +87,7 @@ fn spreads(restitution: f64, taus: &[f64]) -> (Vec<f64>, Vec<f64>) {
     (by_tau, by_time)
 }
 
-/// Cures agree at equal times, however late: clusters collide within themselves as often as the cure lets them, so
+/// Cures agree at equal times: clusters collide within themselves as often as the cure lets them, so
 /// that equal numbers of collisions mean equal times as long as the gas is homogeneous only.
 fn agree(spreads: &[f64], most: f64) -> bool {
     !spreads.is_empty() && spreads.iter().all(|&spread| spread < most)
