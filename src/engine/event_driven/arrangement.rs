@@ -1,6 +1,6 @@
 //! How partners are found, in cells or by lists, and in which order grains stand in memory.
 
-use super::body::{Contact, Event, NONE, Plan};
+use super::body::{Body, Contact, Event, NONE, Plan};
 use super::cells::Cells;
 use super::lists::Lists;
 use super::order::place_on_curve;
@@ -122,16 +122,12 @@ impl<V: Vector> World<V> {
 
     /// Brings the grains into the order of a curve that fills space, and forgets those that have left.
     pub(super) fn order(&mut self) {
-        let places = self.bodies.iter().map(|body| place_on_curve(&self.cells, body.position));
-        let mut order: Vec<(u64, u32)> = places.zip(0..).collect();
-        order.retain(|&(_, row)| self.plans[row as usize].event != Event::Gone);
-        order.sort_unstable_by_key(|&(place, row)| (place, self.ids[row as usize]));
-        let order: Vec<u32> = order.into_iter().map(|(_, row)| row).collect();
+        let order = self.rows_on_curve();
         let mut new_rows = vec![NONE; self.bodies.len()];
         for (new, &old) in order.iter().enumerate() {
             new_rows[old as usize] = new as u32;
         }
-        gather(&mut self.bodies, &order);
+        gather_bodies(&mut self.bodies, &order);
         gather(&mut self.plans, &order);
         gather(&mut self.ids, &order);
         self.spins.as_mut().into_iter().for_each(|spins| gather(spins, &order));
@@ -159,6 +155,15 @@ impl<V: Vector> World<V> {
         (self.pace.crossings_since_order, self.pace.gone) = (0, 0);
     }
 
+    /// The rows of all grains that have not left, in the order of their places on the curve.
+    fn rows_on_curve(&self) -> Vec<u32> {
+        let places = self.bodies.iter().map(|body| place_on_curve(&self.cells, body.position));
+        let mut order: Vec<(u64, u32)> = places.zip(0..).collect();
+        order.retain(|&(_, row)| self.plans[row as usize].event != Event::Gone);
+        order.sort_unstable_by_key(|&(place, row)| (place, self.ids[row as usize]));
+        order.iter().map(|&(_, row)| row).collect()
+    }
+
     /// Makes the chains of all cells, and all lists, of grains that know their cells and anchors.
     pub(super) fn link(&mut self) {
         self.cells.clear();
@@ -181,4 +186,24 @@ impl<V: Vector> World<V> {
 /// Puts row `order[k]` at row k, for all k.
 fn gather<T: Copy>(column: &mut Vec<T>, order: &[u32]) {
     *column = order.iter().map(|&row| column[row as usize]).collect();
+}
+
+/// The same one field after another, so that the copy is small.
+fn gather_bodies<V: Vector>(bodies: &mut Vec<Body<V>>, order: &[u32]) {
+    gather_field(bodies, order, |body| &mut body.position);
+    gather_field(bodies, order, |body| &mut body.velocity);
+    gather_field(bodies, order, |body| &mut body.time);
+    gather_field(bodies, order, |body| &mut body.collisions);
+    bodies.truncate(order.len());
+}
+
+fn gather_field<V: Vector, T: Copy>(
+    bodies: &mut [Body<V>],
+    order: &[u32],
+    field: impl Fn(&mut Body<V>) -> &mut T,
+) {
+    let copy: Vec<T> = order.iter().map(|&row| *field(&mut bodies[row as usize])).collect();
+    for (body, value) in bodies.iter_mut().zip(copy) {
+        *field(body) = value;
+    }
 }

@@ -14,9 +14,13 @@ use super::body::Plan;
 const EVENTS_PER_PAGE: f64 = 128.0;
 /// Fewest pages of a year.
 const FEWEST_PAGES: usize = 16;
+/// Events on a sheet of paper.
+const EVENTS_PER_SHEET: usize = 32;
+/// No sheet.
+const NONE: u32 = u32::MAX;
 
 /// An event of one grain on a page.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Entry {
     /// When, after the beginning of the year [time].
     pub(super) time: f64,
@@ -43,6 +47,26 @@ impl PartialEq for Entry {
 }
 impl Eq for Entry {}
 
+/// A stack of sheets.
+#[derive(Clone, Copy, Debug)]
+struct Page {
+    /// The last sheet, which is being filled.
+    sheet: u32,
+    /// Entries on it.
+    filled: u32,
+}
+
+/// All sheets.
+#[derive(Debug, Default)]
+struct Paper {
+    /// `[sheet]`.
+    sheets: Vec<[Entry; EVENTS_PER_SHEET]>,
+    /// `[sheet]`: the one below it, on its page or on the pile of blank ones.
+    below: Vec<u32>,
+    /// The first blank sheet.
+    blank: u32,
+}
+
 /// The pages of one year.
 #[derive(Debug, Default)]
 pub(super) struct Calendar {
@@ -50,8 +74,8 @@ pub(super) struct Calendar {
     year: f64,
     /// Pages per time [1/time].
     pages_per_time: f64,
-    /// `[page]`: events in the order they were written.
-    pages: Vec<Vec<Entry>>,
+    pages: Vec<Page>,
+    paper: Paper,
     /// Number of the page that is open.
     open_page: usize,
     /// The open page, latest event first.
@@ -76,8 +100,9 @@ impl Calendar {
     /// Begins a year of length `year` in which about `events` events will happen. All pages are empty.
     pub(super) fn begin(&mut self, year: f64, events: f64) {
         let pages = ((events / EVENTS_PER_PAGE) as usize).max(FEWEST_PAGES);
-        self.pages.iter_mut().for_each(Vec::clear);
-        self.pages.resize_with(pages, Vec::new);
+        self.pages.clear();
+        self.pages.resize(pages, Page::EMPTY);
+        self.paper.clear();
         self.year = year;
         self.pages_per_time = pages as f64 / year;
         self.open.clear();
@@ -107,7 +132,7 @@ impl Calendar {
         if page > self.open_page {
             // The last page takes what rounding would put behind it.
             let last = self.pages.len() - 1;
-            self.pages[page.min(last)].push(entry);
+            self.pages[page.min(last)].push(entry, &mut self.paper);
         } else {
             self.usage.late += 1;
             self.late.push(Reverse(entry));
@@ -145,11 +170,11 @@ impl Calendar {
     fn turn_page(&mut self, plans: &[Plan]) -> bool {
         while self.open_page + 1 < self.pages.len() {
             self.open_page += 1;
-            let page = &mut self.pages[self.open_page];
-            if page.is_empty() {
+            let page = std::mem::replace(&mut self.pages[self.open_page], Page::EMPTY);
+            if page.sheet == NONE {
                 continue;
             }
-            std::mem::swap(&mut self.open, page);
+            page.open(&mut self.paper, &mut self.open);
             self.usage.opened += 1;
             self.usage.entries += self.open.len() as u64;
             // All plans are looked at together, so that they travel from memory together.
@@ -160,6 +185,56 @@ impl Calendar {
             }
         }
         false
+    }
+}
+
+impl Page {
+    const EMPTY: Page = Page { sheet: NONE, filled: EVENTS_PER_SHEET as u32 };
+
+    #[inline(always)]
+    fn push(&mut self, entry: Entry, paper: &mut Paper) {
+        if self.filled == EVENTS_PER_SHEET as u32 {
+            *self = Page { sheet: paper.take(self.sheet), filled: 0 };
+        }
+        paper.sheets[self.sheet as usize][self.filled as usize] = entry;
+        self.filled += 1;
+    }
+
+    /// Moves all entries to `entries`, which is empty, and gives the sheets back.
+    fn open(self, paper: &mut Paper, entries: &mut Vec<Entry>) {
+        let Page { mut sheet, filled } = self;
+        let mut written = &paper.sheets[sheet as usize][..filled as usize];
+        loop {
+            entries.extend_from_slice(written);
+            let below = std::mem::replace(&mut paper.below[sheet as usize], paper.blank);
+            paper.blank = sheet;
+            if below == NONE {
+                return;
+            }
+            sheet = below;
+            written = &paper.sheets[sheet as usize];
+        }
+    }
+}
+
+impl Paper {
+    /// All sheets are blank.
+    fn clear(&mut self) {
+        self.sheets.clear();
+        self.below.clear();
+        self.blank = NONE;
+    }
+
+    /// A blank sheet, put on top of `below`.
+    fn take(&mut self, below: u32) -> u32 {
+        let sheet = self.blank;
+        if sheet == NONE {
+            self.sheets.push([Entry::default(); EVENTS_PER_SHEET]);
+            self.below.push(below);
+            return (self.sheets.len() - 1) as u32;
+        }
+        self.blank = std::mem::replace(&mut self.below[sheet as usize], below);
+        sheet
     }
 }
 

@@ -6,7 +6,7 @@
 //! and lists are looked at. All this follows from the state and from counts alone.
 
 use super::body::NONE;
-use super::calendar::Entry;
+use super::calendar::{Calendar, Entry};
 use super::lists::Lists;
 use super::world::World;
 use crate::space::Vector;
@@ -97,6 +97,11 @@ impl<V: Vector> World<V> {
         self.pace.rate = measured.min(1e300).max(self.pace.rate / LARGEST_SLOWDOWN);
         let arrangement = self.next_arrangement();
         let decayed = self.pace.crossings_since_order as f64 > CROSSINGS_PER_ORDER * self.bodies.len() as f64;
+        let disorderly = decayed || self.pace.gone > 0;
+        if disorderly || arrangement.is_some() {
+            // Grains are put into order in the memory that this gives back.
+            self.calendar = Calendar::default();
+        }
         self.open_year();
         if let Some(arrangement) = arrangement {
             self.arrange(arrangement);
@@ -104,7 +109,7 @@ impl<V: Vector> World<V> {
             return;
         }
         let wasteful = self.lists.as_ref().is_some_and(Lists::is_wasteful);
-        if decayed || self.pace.gone > 0 {
+        if disorderly {
             self.order();
         } else if wasteful && let Some(lists) = &mut self.lists {
             // How full the pool is does not belong to a saved state: it must not decide on the order of rows.
