@@ -12,6 +12,10 @@
 //! * **HSMC**: cells fill up: nobody enters a full cell, and full cells pass momentum on to their
 //!   neighbours like grains, so that matter can come to rest and carry load.
 //!
+//! **Event-driven** dynamics is exact, and what the others are held against: hard grains, smooth or rough, of one kind or
+//! several, fly freely from collision to collision. Every grain stands at the time of its own last event and has one
+//! next event; those of all grains wait in a calendar whose pages follow the rate at which things happen.
+//!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
 //! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
 //! ([`scenario`], [`simulation`], [`run`], [`report`]) and the command line ([`cli`]).

@@ -83,7 +83,7 @@ pub struct Counts<V> {
     pub removed: u64,
     /// Momentum given to the walls, `[axis][side]` [mass·length/time].
     pub wall_momentum: [[V; 2]; 3],
-    /// Σ p·s: momentum that displacements and cell collisions carry times the way it is carried
+    /// Σ p·s: momentum that displacements, cell collisions and collisions of hard grains carry, times the way
     /// [mass·length²/time]; over D·V·time it is the collisional pressure.
     pub carried_momentum: f64,
 }

@@ -1,4 +1,4 @@
-//! `impact-parameter`: how far from head-on collisions are (Miller 2004, equation 3.18).
+//! `impact-parameter`: how far from head-on collisions are (Müller 2001, equation 3.18).
 
 use super::measure::{Cadence, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure};
