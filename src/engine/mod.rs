@@ -125,7 +125,7 @@ pub enum EngineError {
     /// Grains collide without end in no time.
     #[error(
         "inelastic collapse at t = {time}: grain {id} has collided {collisions} times within {span:e} time units \
-         (seed {seed}); set a cure in [engine.event_driven], such as collapse = {{ contact_time = {remedy:e} }}"
+         (seed {seed}); set a cure in [engine.event_driven], such as collapse = {{ {cure} = {value:.1e} }}"
     )]
     Collapse {
         /// Identity of a grain that takes part.
@@ -138,8 +138,10 @@ pub enum EngineError {
         seed: u64,
         /// When [time].
         time: f64,
-        /// A contact time that would cure it [time].
-        remedy: f64,
+        /// The key of a cure.
+        cure: &'static str,
+        /// A value that would do [time, or length/time].
+        value: f64,
     },
     /// Nothing moves and nothing will.
     #[error(

@@ -250,7 +250,8 @@ fn wave_contrast(evidence: &Evidence<'_>) -> Option<Comparison> {
 
 fn heap_slope(evidence: &Evidence<'_>) -> Option<Comparison> {
     let [count, rate] = evidence.setup.source?;
-    let is_known = evidence.is_restitution(0.9)
+    let is_known = evidence.setup.engine == "hsmc"
+        && evidence.is_restitution(0.9)
         && evidence.setup.dimension == 2
         && (1400.0..=3500.0).contains(&count)
         && (0.25..=1.0).contains(&rate);

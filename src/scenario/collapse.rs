@@ -9,8 +9,9 @@ use crate::space::Vector;
 
 /// A contact time that leaves a gas as it is, in mean times between collisions of a grain.
 const SHORT_IN_A_GAS: f64 = 1e-4;
-/// The same for grains that come to lie, in units of √(d/|g|).
-const SHORT_AT_REST: f64 = 1e-3;
+/// A speed below which grains that come to lie may bounce without loss, in units of √(|g| d). A contact time is no
+/// cure there: grains that lie collide all the time, and whatever falls on them would come off without loss.
+const SLOW_AT_REST: f64 = 0.05;
 
 /// What to say of a run without a cure that collapse is likely to end.
 pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
@@ -22,23 +23,25 @@ pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
     let RestitutionLaw::Constant(Constant(restitution)) = scenario.restitution else { return None };
     let bound = critical_restitution::<V>(cost::final_grains(scenario), scenario);
     let (reason, remedy) = if restitution < 1.0 && cost::settles(scenario) {
-        let remedy = SHORT_AT_REST * (scenario.grain.diameter / scenario.gravity.length()).sqrt();
-        ("grains that come to rest under gravity collide without end".to_owned(), Some(remedy))
+        let speed = SLOW_AT_REST * (scenario.grain.diameter * scenario.gravity.length()).sqrt();
+        let reason = "grains that come to rest under gravity collide without end".to_owned();
+        (reason, format!("{{ elastic_below = {speed:.0e} }}"))
     } else if restitution < bound {
-        let remedy = estimate::rates(scenario).map(|rates| SHORT_IN_A_GAS / rates.collision_frequency);
         let reason = format!(
             "r = {} is below {}, where a gas of this size and density can collapse",
             rounded(restitution),
             rounded(bound)
         );
-        (reason, remedy)
+        let time = estimate::rates(scenario).map(|rates| SHORT_IN_A_GAS / rates.collision_frequency);
+        (
+            reason,
+            time.map_or("{ rotation = 5 }".to_owned(), |time| format!("{{ contact_time = {time:.0e} }}")),
+        )
     } else {
         return None;
     };
-    let form = remedy
-        .map_or_else(|| "{ contact_time = … }".to_owned(), |time| format!("{{ contact_time = {time:.0e} }}"));
     Some(format!(
-        "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {form} prevents it"
+        "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {remedy} prevents it"
     ))
 }
 
@@ -91,7 +94,7 @@ mod tests {
         assert_eq!(warned("cooling", &["particles.restitution=0.95"]), "");
         let warning = warned("sedimentation", &[]);
         assert!(warning.contains("come to rest under gravity"), "{warning}");
-        assert!(warned("heap", &[]).contains("contact_time = 1e-3"), "{}", warned("heap", &[]));
+        assert!(warned("heap", &[]).contains("elastic_below = 5e-2"), "{}", warned("heap", &[]));
         assert_eq!(warned("heap", &["engine.event_driven.collapse={rotation=5}"]), "");
         let law = "particles.restitution={law='velocity-dependent',r0=0.9,v0=1}";
         assert_eq!(warned("heap", &[law]), "");

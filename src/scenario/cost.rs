@@ -10,8 +10,8 @@ const CACHED_GRAINS: f64 = 2e5;
 /// Recording one grain: measures, hash, frame, compression [s].
 const RECORDING: f64 = 200e-9;
 /// Collisions that the event-driven engine makes in a second: at least, and at most.
-const FLAT_COLLISIONS: (f64, f64) = (3e5, 5e5);
-const DEEP_COLLISIONS: (f64, f64) = (2e5, 3e5);
+const FLAT_COLLISIONS: (f64, f64) = (4e5, 1e6);
+const DEEP_COLLISIONS: (f64, f64) = (2.5e5, 6e5);
 /// What the event-driven engine holds of a grain beside the gas: its events and its cell or list [bytes].
 const EVENTS_OF_A_GRAIN: f64 = 250.0;
 /// A step without grains [s], and what each empty cell adds to it [s].

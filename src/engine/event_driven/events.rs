@@ -104,14 +104,29 @@ impl<V: Vector> World<V> {
         let span = self.pace.shortest_span;
         match self.watch.note(row, body.collisions, self.now, span) {
             None => Ok(()),
-            Some(collisions) => Err(EngineError::Collapse {
-                id: self.ids[row as usize],
-                collisions,
-                span,
-                seed: self.laws.seed,
-                time: self.origin.time() + self.now,
-                remedy: 1e-3 * self.pace.time_between_events(self.bodies.len()),
-            }),
+            Some(collisions) => {
+                let (cure, value) = self.remedy();
+                Err(EngineError::Collapse {
+                    id: self.ids[row as usize],
+                    collisions,
+                    span,
+                    seed: self.laws.seed,
+                    time: self.origin.time() + self.now,
+                    cure,
+                    value,
+                })
+            }
+        }
+    }
+
+    /// Key and value of a cure. Grains that lie collide all the time, which a contact time would take for lasting
+    /// contacts; a speed that did not do wants to be larger.
+    fn remedy(&self) -> (&'static str, f64) {
+        let drop = self.laws.gravity.length() * self.laws.largest_diameter();
+        match self.laws.cure.elastic_below {
+            Some(speed) => ("elastic_below", 2.0 * speed),
+            None if self.falls => ("elastic_below", 0.05 * drop.sqrt()),
+            None => ("contact_time", 1e-3 * self.pace.time_between_events(self.bodies.len())),
         }
     }
 
