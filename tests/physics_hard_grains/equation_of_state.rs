@@ -68,8 +68,8 @@ fn check<V: Space>(
 
 #[test]
 fn fluids_have_their_pressure() {
-    check::<DVec3>((4, 1000), 0.4, 1e6, spheres(0.4), 0.008);
-    check::<DVec2>((4, 1024), 0.5, 1.6e6, disks(0.5), 0.004);
+    check::<DVec3>((8, 2000), 0.4, 2e6, spheres(0.4), 0.008);
+    check::<DVec2>((8, 2048), 0.5, 3.2e6, disks(0.5), 0.004);
 }
 
 #[test]
