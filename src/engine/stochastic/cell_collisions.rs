@@ -48,8 +48,18 @@ pub(crate) struct CellCollisions<V: Vector> {
     fields: Vec<CellField<V>>,
     /// `[cell]`: which neighbour a white cell wants to collide with; nobody for inactive cells.
     choices: Vec<u32>,
-    /// Cells that are full or beside a full one, and not empty.
-    active: Vec<u32>,
+    /// Cells that are full or beside a full one, and not empty, in rising order.
+    active: Vec<Active>,
+}
+
+/// A cell that may take part in collisions. What stays the same from sweep to sweep is looked up once.
+#[derive(Clone, Copy, Debug)]
+struct Active {
+    cell: u32,
+    /// Of the two colours of a chessboard.
+    colour: u32,
+    /// `[2 axis + upwards]`: the neighbour that it may collide with, or nobody.
+    partners: [u32; 6],
 }
 
 /// A white cell that wants to collide with nobody.
@@ -88,7 +98,7 @@ impl<V: Vector> CellCollisions<V> {
             let parity = ((step + sweep) & 1) as u32;
             let serial = step.wrapping_mul(u64::from(rules.sweeps)).wrapping_add(sweep);
             let random = streams.at(serial, Phase::CellCollisions);
-            self.choose(gas, rules.capacity, parity);
+            self.choose(gas, parity);
             let outcomes = self.collide(rules, gas, parity, random, counts);
             self.apply(gas, outcomes, random);
         }
@@ -96,58 +106,55 @@ impl<V: Vector> CellCollisions<V> {
 
     /// Lists the cells that could take part: not empty, and full or beside a full one.
     fn find_active(&mut self, gas: &Gas<V>, capacity: u32) {
-        for cell in self.active.drain(..) {
-            self.choices[cell as usize] = NOBODY;
+        for active in self.active.drain(..) {
+            self.choices[active.cell as usize] = NOBODY;
         }
-        let cells = gas.grid().number_of_cells();
+        let number_of_cells = gas.grid().number_of_cells();
         let full = |cell: u32| gas.occupancy(cell) >= capacity;
         let full_cells: Vec<u32> = occupied_spans(gas).flatten().filter(|&cell| full(cell)).collect();
         if full_cells.is_empty() {
             return;
         }
+        let mut cells = Vec::with_capacity(3 * full_cells.len());
         for &cell in &full_cells {
-            self.active.push(cell);
-            let beside = neighbours(gas.grid(), cell).map(|(_, _, other)| other);
-            self.active.extend(beside.filter(|&other| gas.occupancy(other) > 0 && !full(other)));
+            cells.push(cell);
+            let beside = neighbours(gas.grid(), cell).map(|(_, other)| other);
+            cells.extend(beside.filter(|&other| gas.occupancy(other) > 0 && !full(other)));
         }
-        self.active.sort_unstable();
-        self.active.dedup();
-        self.fields.resize(cells, CellField::default());
-        self.choices.resize(cells, NOBODY);
+        cells.sort_unstable();
+        cells.dedup();
+        self.active.extend(cells.into_iter().map(|cell| Active::new(gas, cell, full)));
+        self.fields.resize(number_of_cells, CellField::default());
+        self.choices.resize(number_of_cells, NOBODY);
     }
 
     fn measure(&mut self, gas: &Gas<V>) {
-        let measured = parallel::map_slice(gas.len(), &self.active, |&cell| {
-            CellField::of(&gas.velocities()[gas.rows(cell)])
+        let measured = parallel::map_slice(gas.len(), &self.active, |active| {
+            CellField::of(&gas.velocities()[gas.rows(active.cell)])
         });
-        for (&cell, field) in self.active.iter().zip(measured) {
-            self.fields[cell as usize] = field;
+        for (active, field) in self.active.iter().zip(measured) {
+            self.fields[active.cell as usize] = field;
         }
     }
 
     /// Each white cell chooses the neighbour it approaches fastest; ties go to the lower cell number.
-    fn choose(&mut self, gas: &Gas<V>, capacity: u32, parity: u32) {
+    fn choose(&mut self, gas: &Gas<V>, parity: u32) {
         let fields = &self.fields;
-        let full = |cell: u32| gas.occupancy(cell) >= capacity;
-        let choice = |cell: u32| {
-            let own_full = full(cell);
+        let choice = |active: &Active| {
             let mut best = (NOBODY, 0.0);
-            for (axis, upwards, other) in neighbours(gas.grid(), cell) {
-                if gas.occupancy(other) == 0 || !(own_full || full(other)) {
-                    continue;
-                }
-                let approach = approach_speed(fields, cell, other, axis, upwards);
+            for (axis, upwards, other) in active.partners() {
+                let approach = approach_speed(fields, active.cell, other, axis, upwards);
                 if approach > best.1 || (approach == best.1 && approach > 0.0 && other < best.0) {
                     best = (other, approach);
                 }
             }
             best.0
         };
-        let choices = parallel::map_slice(gas.len(), &self.active, |&cell| {
-            if is_white(gas.grid(), cell, parity) { choice(cell) } else { NOBODY }
+        let choices = parallel::map_slice(gas.len(), &self.active, |active| {
+            if active.is_white(parity) { choice(active) } else { NOBODY }
         });
-        for (&cell, choice) in self.active.iter().zip(choices) {
-            self.choices[cell as usize] = choice;
+        for (active, choice) in self.active.iter().zip(choices) {
+            self.choices[active.cell as usize] = choice;
         }
     }
 
@@ -161,8 +168,8 @@ impl<V: Vector> CellCollisions<V> {
         counts: &mut Counts<V>,
     ) -> Vec<Outcome<V>> {
         let grid = gas.grid();
-        let pairs = parallel::map_slice(gas.len(), &self.active, |&cell| {
-            let pair = if is_white(grid, cell, parity) { None } else { self.accepted_suitor(grid, cell) };
+        let pairs = parallel::map_slice(gas.len(), &self.active, |active| {
+            let pair = if active.is_white(parity) { None } else { self.accepted_suitor(active) };
             pair.map(|pair| self.outcome(rules, grid, pair, random))
         });
         let mut outcomes = Vec::with_capacity(self.active.len());
@@ -176,10 +183,11 @@ impl<V: Vector> CellCollisions<V> {
     }
 
     /// The pair (black, white) with the axis and direction from black to white.
-    fn accepted_suitor(&self, grid: &Grid<V>, black: u32) -> Option<(u32, u32, usize, bool)> {
+    fn accepted_suitor(&self, active: &Active) -> Option<(u32, u32, usize, bool)> {
+        let black = active.cell;
         let mut best: Option<(u32, u32, usize, bool)> = None;
         let mut fastest = 0.0;
-        for (axis, upwards, white) in neighbours(grid, black) {
+        for (axis, upwards, white) in active.partners() {
             if self.choices[white as usize] != black {
                 continue;
             }
@@ -247,6 +255,29 @@ impl<V: Vector> CellCollisions<V> {
         for (cell, field) in changed {
             self.fields[cell as usize] = field;
         }
+    }
+}
+
+impl Active {
+    fn new<V: Vector>(gas: &Gas<V>, cell: u32, full: impl Fn(u32) -> bool) -> Self {
+        let [i, j, k] = gas.grid().coordinates(cell);
+        let mut partners = [NOBODY; 6];
+        for (place, other) in neighbours(gas.grid(), cell) {
+            if gas.occupancy(other) > 0 && (full(cell) || full(other)) {
+                partners[place] = other;
+            }
+        }
+        Active { cell, colour: (i + j + k) & 1, partners }
+    }
+
+    fn is_white(&self, parity: u32) -> bool {
+        (self.colour + parity) & 1 == 0
+    }
+
+    /// Axis, whether upwards, and the cell.
+    fn partners(&self) -> impl Iterator<Item = (usize, bool, u32)> + '_ {
+        let places = self.partners.iter().enumerate().filter(|(_, other)| **other != NOBODY);
+        places.map(|(place, &other)| (place / 2, place % 2 == 1, other))
     }
 }
 
@@ -332,17 +363,10 @@ fn occupied_spans<V: Vector>(gas: &Gas<V>) -> impl Iterator<Item = std::ops::Ran
     })
 }
 
-fn is_white<V: Vector>(grid: &Grid<V>, cell: u32, parity: u32) -> bool {
-    let [i, j, k] = grid.coordinates(cell);
-    (i + j + k + parity) & 1 == 0
-}
-
-/// The face neighbours of `cell`: axis, whether upwards, and the cell.
-fn neighbours<V: Vector>(grid: &Grid<V>, cell: u32) -> impl Iterator<Item = (usize, bool, u32)> + '_ {
+/// The face neighbours of `cell`, each with its place 2 axis + upwards.
+fn neighbours<V: Vector>(grid: &Grid<V>, cell: u32) -> impl Iterator<Item = (usize, u32)> + '_ {
     let coordinates = grid.coordinates(cell);
-    (0..V::DIMENSION).flat_map(move |axis| {
-        [false, true].into_iter().filter_map(move |upwards| {
-            grid.neighbour(coordinates, axis, upwards).map(|other| (axis, upwards, other))
-        })
+    (0..2 * V::DIMENSION).filter_map(move |place| {
+        grid.neighbour(coordinates, place / 2, place % 2 == 1).map(|other| (place, other))
     })
 }
