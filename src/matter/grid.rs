@@ -101,8 +101,13 @@ impl<V: Vector> Grid<V> {
     /// The coordinates of `cell` along each axis.
     #[inline]
     pub fn coordinates(&self, cell: u32) -> [u32; 3] {
-        let row = cell / self.cells[0];
-        [cell % self.cells[0], row % self.cells[1], row / self.cells[1]]
+        let (mut coordinates, mut rest) = ([0; 3], cell);
+        for axis in (1..V::DIMENSION).rev() {
+            coordinates[axis] = rest / self.strides[axis];
+            rest -= coordinates[axis] * self.strides[axis];
+        }
+        coordinates[0] = rest;
+        coordinates
     }
 
     /// The number of the cell at `coordinates`.
