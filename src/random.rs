@@ -3,7 +3,7 @@
 //! A generator is made where it is needed, used and dropped. Results therefore do not
 //! depend on the number of threads, on what was recorded, or on where a run was interrupted.
 
-use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::Xoroshiro128PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// What a stream is used for; streams of different phases are independent.
@@ -43,9 +43,10 @@ pub struct PhaseStreams {
     key: u64,
 }
 
-/// One stream of random numbers: xoshiro256++ (Blackman and Vigna 2021).
+/// One stream of random numbers: xoroshiro128++ (Blackman and Vigna 2021). Its state fills two registers
+/// and is quickly seeded: a stream often serves one cell for one step.
 #[derive(Clone, Debug)]
-pub struct Stream(Xoshiro256PlusPlus);
+pub struct Stream(Xoroshiro128PlusPlus);
 
 impl Streams {
     /// The streams of `seed`.
@@ -69,7 +70,7 @@ impl PhaseStreams {
     /// The stream of `place`: a cell, a grain's id, a serial number.
     #[inline]
     pub fn stream(self, place: u64) -> Stream {
-        Stream(Xoshiro256PlusPlus::seed_from_u64(self.hash(place)))
+        Stream(Xoroshiro128PlusPlus::seed_from_u64(self.hash(place)))
     }
 
     /// One well-mixed number for `place`, for rankings.
@@ -89,7 +90,7 @@ impl Stream {
     /// Uniform in [0, 1): 53 random bits.
     #[inline]
     pub fn uniform(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+        unit_interval(self.bits())
     }
 
     /// Uniform in [−1, 1).
@@ -104,15 +105,13 @@ impl Stream {
         ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
     }
 
-    /// An ordered pair of different indices below `n`, from one draw; `n` ≥ 2.
-    ///
-    /// Each index takes 32 bits, so that its bias is at most n/2³².
-    #[inline]
-    pub fn pair_below(&mut self, n: u32) -> (usize, usize) {
-        let bits = self.bits();
-        let first = ((bits >> 32) * u64::from(n)) >> 32;
-        let second = ((bits & 0xffff_ffff) * u64::from(n - 1)) >> 32;
-        (first as usize, (second + u64::from(second >= first)) as usize)
+    /// An ordered pair of different indices below `n` ≥ 2 and a number uniform in [0, 1), all from one draw:
+    /// what one choice leaves of the 64 bits, as a fraction, serves the next. Each bias is below n²/2⁶⁴.
+    #[inline(always)]
+    pub fn pair_and_uniform(&mut self, n: u32) -> ((usize, usize), f64) {
+        let (first, rest) = split(self.bits(), n);
+        let (second, rest) = split(rest, n - 1);
+        ((first, second + usize::from(second >= first)), unit_interval(rest))
     }
 
     /// The nearest integers on either side of `x` ≥ 0, drawn so that the mean is `x`.
@@ -145,6 +144,20 @@ impl Stream {
             }
         }
     }
+}
+
+/// Uniform in [0, 1) from the upper 53 of uniform `bits`.
+#[inline(always)]
+fn unit_interval(bits: u64) -> f64 {
+    // The detour over i64 spares the case of the highest bit, which is never set.
+    (bits >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
+/// A uniform index below `n` from the fraction `bits`/2⁶⁴, and what remains of the fraction.
+#[inline(always)]
+fn split(bits: u64, n: u32) -> (usize, u64) {
+    let product = u128::from(bits) * u128::from(n);
+    ((product >> 64) as usize, product as u64)
 }
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -204,7 +217,7 @@ mod tests {
         let mut random = Streams::new(1).at(0, Phase::Collisions).stream(0);
         let mut counts = [[0_u32; 3]; 3];
         for _ in 0..60_000 {
-            let (i, j) = random.pair_below(3);
+            let ((i, j), _) = random.pair_and_uniform(3);
             counts[i][j] += 1;
         }
         for (i, row) in counts.iter().enumerate() {

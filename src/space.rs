@@ -59,10 +59,10 @@ pub trait Vector:
     ///
     /// 2D (1 − 7ν/16)/(1 − ν)² (Henderson 1975); 3D (1 − ν/2)/(1 − ν)³ (Carnahan and Starling 1969).
     fn contact_correlation(volume_fraction: f64) -> f64;
-    /// Unit normal at contact of two grains that approach along the unit vector `direction`, for
-    /// the impact parameter of molecular chaos: uniform on [−d, d] in 2D, uniform in the disc of radius d in 3D.
-    /// It points against `direction`, so that an approaching pair has a negative normal velocity.
-    fn contact_normal(direction: Self, random: &mut Stream) -> Self;
+    /// −(g·n)n: the velocity that two equal elastic grains of relative velocity g = `relative` exchange, for the
+    /// impact parameter of molecular chaos: uniform on [−d, d] in 2D, uniform in the disc of radius d in 3D.
+    /// Its length is their normal speed, its direction the contact normal n that points against g.
+    fn exchange(relative: Self, random: &mut Stream) -> Self;
     /// Ratio c that makes a displacement by c·d along the relative velocity after the collision
     /// carry the collisional pressure of Enskog theory for `restitution` r, not only for r = 1.
     ///
@@ -101,6 +101,16 @@ pub trait Vector:
     /// Length.
     fn length(self) -> f64 {
         self.length_squared().sqrt()
+    }
+    /// The lower of each two components.
+    #[inline(always)]
+    fn lower(self, other: Self) -> Self {
+        Self::from_fn(|axis| if other[axis] < self[axis] { other[axis] } else { self[axis] })
+    }
+    /// The upper of each two components.
+    #[inline(always)]
+    fn upper(self, other: Self) -> Self {
+        Self::from_fn(|axis| if other[axis] > self[axis] { other[axis] } else { self[axis] })
     }
     /// Whether every component is finite.
     fn is_finite(self) -> bool {
@@ -144,6 +154,7 @@ impl Vector for DVec2 {
             _ => libm::atan(root * b) / root,
         }
     }
+    #[inline(always)]
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec2::new(component(0), component(1))
     }
@@ -162,11 +173,13 @@ impl Vector for DVec2 {
         let free = 1.0 - volume_fraction;
         (1.0 - 0.4375 * volume_fraction) / (free * free)
     }
-    #[inline]
-    fn contact_normal(direction: Self, random: &mut Stream) -> Self {
+    #[inline(always)]
+    fn exchange(relative: Self, random: &mut Stream) -> Self {
+        // With g⊥ to the left of g, n = (b g⊥ − √(1 − b²) g)/|g|; of g·n = −|g| √(1 − b²) no root of |g|² is left.
         let b = random.symmetric();
-        let across = DVec2::new(-direction.y, direction.x);
-        across * b - direction * (1.0 - b * b).sqrt()
+        let cosine_squared = 1.0 - b * b;
+        let across = DVec2::new(-relative.y, relative.x);
+        across * (b * cosine_squared.sqrt()) - relative * cosine_squared
     }
     fn displacement_ratio(restitution: f64) -> f64 {
         // ⟨√(1 − b²)⟩ = π/4 over uniform b; the other mean by Simpson's rule.
@@ -218,6 +231,7 @@ impl Vector for DVec3 {
         }
         -0.5 * libm::log1p(-c * b * b) / c
     }
+    #[inline(always)]
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
         DVec3::new(component(0), component(1), component(2))
     }
@@ -236,11 +250,14 @@ impl Vector for DVec3 {
         let free = 1.0 - volume_fraction;
         (1.0 - 0.5 * volume_fraction) / (free * free * free)
     }
-    #[inline]
-    fn contact_normal(direction: Self, random: &mut Stream) -> Self {
-        let (p, q, b_squared) = random.in_disc();
-        let (first, second) = tangents(direction);
-        first * p + second * q - direction * (1.0 - b_squared).sqrt()
+    #[inline(always)]
+    fn exchange(relative: Self, random: &mut Stream) -> Self {
+        // Elastic spheres scatter into all directions alike: −(g·n)n = (|g|u − g)/2 with u uniform on the sphere
+        // (Marsaglia 1972).
+        let (p, q, square) = random.in_disc();
+        let equator = 2.0 * (1.0 - square).sqrt();
+        let direction = DVec3::new(p * equator, q * equator, 1.0 - 2.0 * square);
+        (direction * relative.length() - relative) * 0.5
     }
     fn displacement_ratio(restitution: f64) -> f64 {
         let r = restitution;
@@ -298,11 +315,11 @@ mod tests {
         let direction = direction * (1.0 / direction.length());
         let mut sum = 0.0;
         for _ in 0..draws {
-            let normal = V::contact_normal(direction, &mut random);
-            assert!((normal.length() - 1.0).abs() < 1e-12);
-            let cosine = normal.dot(direction);
-            assert!(cosine <= 0.0);
-            sum += cosine * cosine;
+            let exchange = V::exchange(direction, &mut random);
+            let cosine = exchange.dot(direction);
+            // −(g·n)n of |g| = 1: its squared length is −g·(−(g·n)n).
+            assert!(cosine <= 0.0 && (exchange.length_squared() + cosine).abs() < 1e-12);
+            sum += exchange.length_squared();
         }
         sum / f64::from(draws)
     }
@@ -318,7 +335,8 @@ mod tests {
     fn offsets<V: Vector>(direction: V, draws: u32) -> impl Iterator<Item = V> {
         let mut random = stream();
         (0..draws).map(move |_| {
-            let normal = V::contact_normal(direction, &mut random);
+            let exchange = V::exchange(direction, &mut random);
+            let normal = exchange * (1.0 / exchange.length());
             normal - direction * normal.dot(direction)
         })
     }

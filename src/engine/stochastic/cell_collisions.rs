@@ -213,14 +213,12 @@ impl<V: Vector> CellCollisions<V> {
     ) -> (Outcome<V>, Outcome<V>, f64) {
         let (a, b) = (self.fields[black as usize], self.fields[white as usize]);
         let relative = a.velocity - b.velocity;
-        let direction = relative * (1.0 / relative.length());
-        let normal = V::contact_normal(direction, &mut random.stream(u64::from(black)));
-        let approach = -relative.dot(normal);
+        let elastic = V::exchange(relative, &mut random.stream(u64::from(black)));
         let (n_a, n_b) = (f64::from(a.grains), f64::from(b.grains));
         let reduced = n_a * n_b / (n_a + n_b);
-        let impulse = normal * ((1.0 + rules.restitution) * reduced * approach);
+        let impulse = elastic * ((1.0 + rules.restitution) * reduced);
         // In units of the grain mass: Σ |v − v_c|² that the two cells gain together.
-        let lost = (1.0 - rules.restitution * rules.restitution) * reduced * approach * approach;
+        let lost = (1.0 - rules.restitution * rules.restitution) * reduced * elastic.length_squared();
         let (heat_a, heat_b) = heats(&a, &b, lost);
         let separation = if upwards { -grid.side()[axis] } else { grid.side()[axis] };
         let carried = rules.mass * impulse[axis] * separation;

@@ -39,10 +39,14 @@ pub(crate) struct Displaced<V> {
     pub(crate) shift: V,
 }
 
-/// A bound on relative speeds: twice the largest deviation from the cell's mean.
+/// The box in velocity space that holds all velocities of a cell. Its diagonal bounds their relative speeds.
 struct SpeedBound<V> {
-    mean: V,
-    largest_square: f64,
+    /// One of the velocities: the box is kept relative to it.
+    pivot: V,
+    lowest: V,
+    highest: V,
+    /// The diagonal, squared [length²/time²].
+    square: f64,
 }
 
 impl<R: Restitution> PairCollisions<R> {
@@ -84,20 +88,19 @@ impl<R: Restitution> PairCollisions<R> {
         let pairs = enskog_factor * f64::from(grains) * f64::from(grains - 1);
         tally.collision_rate += self.expected_rate::<V>(pairs, grains, sum_of_squares);
         let mut random = self.streams.stream(u64::from(cell));
-        let mut candidates = random.round(pairs * self.candidates_per_speed * bound.relative_speed());
+        let mut candidates = random.round(pairs * self.candidates_per_speed * bound.square.sqrt());
         while candidates > 0 {
             candidates -= 1;
             tally.counts.candidates += 1;
-            let pair = random.pair_below(grains);
+            let (pair, z) = random.pair_and_uniform(grains);
             let relative = velocities[pair.0] - velocities[pair.1];
             let square = relative.length_squared();
-            let z = random.uniform();
-            if square <= z * z * bound.relative_square() {
+            if square <= z * z * bound.square {
                 continue;
             }
             tally.counts.collisions += 1;
-            let (normal, after) = self.exchange(pair, relative, square, velocities, &mut random);
-            if let Some(shift) = self.displacement.shift(normal, after)
+            let (change, after) = self.exchange(pair, relative, velocities, &mut random);
+            if let Some(shift) = self.displacement.shift(change, after)
                 && displace(Displaced { pair, shift }, velocities)
             {
                 tally.counts.carried_momentum += self.mass * after.dot(shift);
@@ -127,22 +130,20 @@ impl<R: Restitution> PairCollisions<R> {
     }
 
     /// Exchanges momentum along a random contact normal; the normal relative velocity becomes
-    /// −r times itself. Returns the normal and the relative velocity afterwards.
+    /// −r times itself. Returns the change of the first velocity and the relative velocity afterwards.
     #[inline(always)]
     fn exchange<V: Vector>(
         &self,
         pair: (usize, usize),
         relative: V,
-        square: f64,
         velocities: &mut [V],
         random: &mut Stream,
     ) -> (V, V) {
-        let normal = V::contact_normal(relative * (1.0 / square.sqrt()), random);
-        let approach = -relative.dot(normal);
-        let impulse = normal * (0.5 * (1.0 + self.restitution.at(approach)) * approach);
-        velocities[pair.0] += impulse;
-        velocities[pair.1] -= impulse;
-        (normal, relative + impulse * 2.0)
+        let elastic = V::exchange(relative, random);
+        let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
+        velocities[pair.0] += change;
+        velocities[pair.1] -= change;
+        (change, relative + change * 2.0)
     }
 }
 
@@ -160,16 +161,16 @@ impl Displacement {
         }
     }
 
+    /// The way of the first partner, whose velocity has changed by `change`.
     #[inline(always)]
-    fn shift<V: Vector>(self, normal: V, after: V) -> Option<V> {
-        match self {
-            Displacement::None => None,
-            Displacement::MomentumChange { distance } => Some(normal * distance),
-            Displacement::RelativeVelocity { distance } => {
-                let speed = after.length();
-                (speed > 0.0).then(|| after * (distance / speed))
-            }
-        }
+    fn shift<V: Vector>(self, change: V, after: V) -> Option<V> {
+        let (direction, distance) = match self {
+            Displacement::None => return None,
+            Displacement::MomentumChange { distance } => (change, distance),
+            Displacement::RelativeVelocity { distance } => (after, distance),
+        };
+        let length = direction.length();
+        (length > 0.0).then(|| direction * (distance / length))
     }
 }
 
@@ -177,42 +178,33 @@ impl<V: Vector> SpeedBound<V> {
     /// The bound, and the sum of squared deviations from the mean.
     #[inline(always)]
     fn of(velocities: &[V]) -> (Self, f64) {
-        let mut sum = V::ZERO;
-        for &velocity in velocities.iter() {
-            sum += velocity;
+        let pivot = velocities[0];
+        let (mut lowest, mut highest) = (V::ZERO, V::ZERO);
+        let (mut sum, mut squares) = (V::ZERO, 0.0);
+        for &velocity in &velocities[1..] {
+            let relative = velocity - pivot;
+            lowest = lowest.lower(relative);
+            highest = highest.upper(relative);
+            sum += relative;
+            squares += relative.length_squared();
         }
-        let mean = sum * (1.0 / velocities.len() as f64);
-        let (mut largest_square, mut sum_of_squares) = (0.0, 0.0);
-        for &velocity in velocities.iter() {
-            let square = (velocity - mean).length_squared();
-            sum_of_squares += square;
-            largest_square = if square > largest_square { square } else { largest_square };
-        }
-        (SpeedBound { mean, largest_square }, sum_of_squares)
-    }
-
-    /// No two grains of the cell are faster relative to each other than this [length/time].
-    #[inline(always)]
-    fn relative_speed(&self) -> f64 {
-        2.0 * self.largest_square.sqrt()
-    }
-
-    /// Its square.
-    #[inline(always)]
-    fn relative_square(&self) -> f64 {
-        4.0 * self.largest_square
+        let about_mean = squares - sum.length_squared() / velocities.len() as f64;
+        let square = (highest - lowest).length_squared();
+        (SpeedBound { pivot, lowest, highest, square }, if about_mean < 0.0 { 0.0 } else { about_mean })
     }
 
     /// Makes the bound hold for `velocity` too. Returns by which factor it grew, so that
     /// candidates still to come can be multiplied: acceptance never exceeds one.
     #[inline(always)]
     fn raise(&mut self, velocity: V) -> f64 {
-        let square = (velocity - self.mean).length_squared();
-        if square <= self.largest_square {
+        let relative = velocity - self.pivot;
+        let (lowest, highest) = (self.lowest.lower(relative), self.highest.upper(relative));
+        if lowest == self.lowest && highest == self.highest {
             return 1.0;
         }
-        let growth = (square / self.largest_square).sqrt();
-        self.largest_square = square;
-        growth
+        let before = self.square;
+        (self.lowest, self.highest) = (lowest, highest);
+        self.square = (highest - lowest).length_squared();
+        (self.square / before).sqrt()
     }
 }

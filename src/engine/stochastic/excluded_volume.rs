@@ -170,7 +170,7 @@ fn fly_block<V: Vector, R: Restitution>(
         let row = block.first_row + k;
         let (position, velocity) = (columns.positions[row], columns.velocities[row]);
         let flight = flights.fly(position, velocity, block.ids[k], &mut tally.counts.wall_momentum);
-        tally.note_velocity(flight.velocity);
+        tally.speeds.note(flight.velocity);
         block.positions[k] = flight.position;
         block.velocities[k] = flight.velocity;
         let target = if flight.left { REMOVED } else { flights.cell_of(flight.position) };

@@ -64,16 +64,28 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         }
     }
 
-    /// The flight of grain `id` from `position` with `velocity`; what walls gain is added to `momentum`.
+    /// Where a grain gets that meets nothing, and its velocity there.
     #[inline(always)]
-    pub(crate) fn fly(&self, position: V, velocity: V, id: u32, momentum: &mut WallMomentum<V>) -> Flight<V> {
-        let there = position + velocity * self.duration + self.fall;
+    pub(crate) fn free(&self, position: V, velocity: V) -> (V, V) {
+        (position + velocity * self.duration + self.fall, velocity + self.gain)
+    }
+
+    /// Whether a free flight that ends in `there` is all there is to it: no edge is near.
+    #[inline(always)]
+    pub(crate) fn is_free(&self, there: V) -> bool {
         let mut inside = true;
         for axis in 0..V::DIMENSION {
             inside &= there[axis] >= self.safe_lower[axis] && there[axis] < self.safe_upper[axis];
         }
-        if inside {
-            return Flight { position: there, velocity: velocity + self.gain, left: false };
+        inside
+    }
+
+    /// The flight of grain `id` from `position` with `velocity`; what walls gain is added to `momentum`.
+    #[inline(always)]
+    pub(crate) fn fly(&self, position: V, velocity: V, id: u32, momentum: &mut WallMomentum<V>) -> Flight<V> {
+        let (there, gained) = self.free(position, velocity);
+        if self.is_free(there) {
+            return Flight { position: there, velocity: gained, left: false };
         }
         self.fly_to_the_edge(position, velocity, id, momentum)
     }
@@ -99,8 +111,9 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
     ///
     /// At most one hit per axis and step; a second one on the same axis brings the grain to rest at
     /// the wall (an even number of reversals would make a rough floor frictionless).
+    #[cold]
     #[inline(never)]
-    fn fly_to_the_edge(
+    pub(crate) fn fly_to_the_edge(
         &self,
         position: V,
         velocity: V,

@@ -7,7 +7,8 @@ use super::enskog::EnskogFactors;
 use super::flight::Flights;
 use super::laws::{Laws, Room};
 use super::parallel;
-use super::tally::Tally;
+use super::tally::{Speeds, Tally};
+use crate::engine::report::Counts;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::sort::REMOVED;
@@ -42,7 +43,7 @@ pub(crate) fn collide_and_move<V: Vector, R: Restitution>(
 }
 
 impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
-    fn block(&self, block: Block<'_, V>, offsets: &[u32]) -> Tally<V> {
+    fn block(&self, mut block: Block<'_, V>, offsets: &[u32]) -> Tally<V> {
         let mut tally = Tally::default();
         for cell in block.cells.clone() {
             let rows = block.rows(cell, offsets);
@@ -50,14 +51,13 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
                 continue;
             }
             let positions = &mut block.positions[rows.clone()];
-            let velocities = &mut block.velocities[rows.clone()];
-            let factor = self.enskog.of(cell, rows.len());
+            let velocities = &mut block.velocities[rows];
+            let factor = self.enskog.of(cell, velocities.len());
             self.collisions.collide(cell, factor, velocities, &mut tally, |displaced, _| {
                 self.displace(displaced, positions)
             });
-            let ids = &block.ids[rows.clone()];
-            self.advect(positions, velocities, ids, &mut block.targets[rows], &mut tally);
         }
+        self.advect(&mut block, &mut tally);
         tally
     }
 
@@ -73,27 +73,36 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
         possible
     }
 
-    #[inline(always)]
-    fn advect(
-        &self,
-        positions: &mut [V],
-        velocities: &mut [V],
-        ids: &[u32],
-        targets: &mut [u32],
-        tally: &mut Tally<V>,
-    ) {
-        for row in 0..ids.len() {
-            let flight =
-                self.flights.fly(positions[row], velocities[row], ids[row], &mut tally.counts.wall_momentum);
-            positions[row] = flight.position;
-            velocities[row] = flight.velocity;
-            tally.note_velocity(flight.velocity);
-            targets[row] = if flight.left {
-                tally.counts.removed += 1;
-                REMOVED
+    /// Moves all grains of the block.
+    fn advect(&self, block: &mut Block<'_, V>, tally: &mut Tally<V>) {
+        let rows = block.ids.len();
+        let (positions, velocities) = (&mut block.positions[..rows], &mut block.velocities[..rows]);
+        let targets = &mut block.targets[..rows];
+        let mut speeds = Speeds::default();
+        for row in 0..rows {
+            let (position, velocity) = self.flights.free(positions[row], velocities[row]);
+            if self.flights.is_free(position) {
+                (positions[row], velocities[row]) = (position, velocity);
+                targets[row] = self.flights.cell_of(position);
             } else {
-                self.flights.cell_of(flight.position)
-            };
+                let grain = (&mut positions[row], &mut velocities[row], block.ids[row]);
+                targets[row] = self.meet_the_edge(grain, &mut tally.counts);
+            }
+            speeds.note(velocities[row]);
         }
+        tally.speeds.add(&speeds);
+    }
+
+    /// Moves one grain that comes near an edge; returns the cell it goes to.
+    #[cold]
+    #[inline(never)]
+    fn meet_the_edge(&self, (position, velocity, id): (&mut V, &mut V, u32), counts: &mut Counts<V>) -> u32 {
+        let flight = self.flights.fly_to_the_edge(*position, *velocity, id, &mut counts.wall_momentum);
+        (*position, *velocity) = (flight.position, flight.velocity);
+        if flight.left {
+            counts.removed += 1;
+            return REMOVED;
+        }
+        self.flights.cell_of(flight.position)
     }
 }

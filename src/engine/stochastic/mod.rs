@@ -109,7 +109,7 @@ impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
         gas.clock.advance(duration);
         self.state.step += 1;
         self.set_pace(gas, &tally);
-        if !tally.sum_of_squares.is_finite() {
+        if !tally.speeds.sum_of_squares.is_finite() {
             return Err(self.not_finite(gas));
         }
         Ok(StepReport { steps: 1, duration, capped, counts: tally.counts, ..StepReport::default() })

@@ -11,12 +11,37 @@ pub(crate) struct Tally<V> {
     pub counts: Counts<V>,
     /// Expected collisions per time, from the temperatures of the cells [1/time].
     pub collision_rate: f64,
-    /// Largest squared speed after the move [length²/time²].
+    /// Speeds after the move.
+    pub speeds: Speeds<V>,
+}
+
+/// What a step knows of the speeds of grains.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Speeds<V> {
+    /// Largest squared speed [length²/time²].
     pub largest_square: f64,
-    /// Σ v² after the move [length²/time²].
+    /// Σ v² [length²/time²].
     pub sum_of_squares: f64,
-    /// Σ v after the move [length/time].
+    /// Σ v [length/time].
     pub sum_of_velocities: V,
+}
+
+impl<V: Vector> Speeds<V> {
+    /// Takes note of one more grain.
+    #[inline(always)]
+    pub(crate) fn note(&mut self, velocity: V) {
+        let square = velocity.length_squared();
+        self.sum_of_squares += square;
+        self.sum_of_velocities += velocity;
+        self.largest_square = if square > self.largest_square { square } else { self.largest_square };
+    }
+
+    /// Adds those of other grains.
+    pub(crate) fn add(&mut self, others: &Self) {
+        self.largest_square = self.largest_square.max(others.largest_square);
+        self.sum_of_squares += others.sum_of_squares;
+        self.sum_of_velocities += others.sum_of_velocities;
+    }
 }
 
 impl<V: Vector> Tally<V> {
@@ -24,20 +49,7 @@ impl<V: Vector> Tally<V> {
     pub(crate) fn add(&mut self, block: &Self) {
         self.counts.add(&block.counts);
         self.collision_rate += block.collision_rate;
-        self.largest_square = self.largest_square.max(block.largest_square);
-        self.sum_of_squares += block.sum_of_squares;
-        self.sum_of_velocities += block.sum_of_velocities;
-    }
-
-    /// Takes note of a velocity after the move.
-    #[inline(always)]
-    pub(crate) fn note_velocity(&mut self, velocity: V) {
-        let square = velocity.length_squared();
-        self.sum_of_squares += square;
-        self.sum_of_velocities += velocity;
-        if square > self.largest_square {
-            self.largest_square = square;
-        }
+        self.speeds.add(&block.speeds);
     }
 
     /// The sum of `blocks` in their order.

@@ -65,7 +65,7 @@ pub(crate) fn pace<V: Vector, R: Restitution>(
     gas: &Gas<V>,
     tally: &Tally<V>,
 ) -> (f64, f64) {
-    let speed = tally.largest_square.sqrt();
+    let speed = tally.speeds.largest_square.sqrt();
     let grains = gas.len() as f64;
     if grains >= FEWEST_GRAINS_PER_CELL * gas.grid().number_of_cells() as f64 {
         return (speed, tally.collision_rate);
@@ -80,8 +80,8 @@ fn global_collision_rate<V: Vector, R: Restitution>(
     tally: &Tally<V>,
 ) -> f64 {
     let grains = gas.len() as f64;
-    let mean = tally.sum_of_velocities * (1.0 / grains);
-    let variance = tally.sum_of_squares / grains - mean.length_squared();
+    let mean = tally.speeds.sum_of_velocities * (1.0 / grains);
+    let variance = tally.speeds.sum_of_squares / grains - mean.length_squared();
     let temperature = laws.grain.mass * variance.max(0.0) / V::DIMENSION as f64;
     let fraction = grains * laws.grain.volume::<V>() / gas.grid().size().product();
     let factor =
@@ -98,7 +98,7 @@ pub(crate) fn measure<V: Vector, R: Restitution>(laws: &Laws<V, R>, gas: &Gas<V>
     for cell in 0..gas.grid().number_of_cells() as u32 {
         let velocities = &gas.velocities()[gas.rows(cell)];
         tally.collision_rate += collisions.rate(enskog.of(cell, velocities.len()), velocities);
-        velocities.iter().for_each(|&velocity| tally.note_velocity(velocity));
+        velocities.iter().for_each(|&velocity| tally.speeds.note(velocity));
     }
     tally
 }
