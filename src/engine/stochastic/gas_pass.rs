@@ -84,11 +84,13 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
             if self.flights.is_free(position) {
                 (positions[row], velocities[row]) = (position, velocity);
                 targets[row] = self.flights.cell_of(position);
+                // Not read back from the column, whose store would still be on its way.
+                speeds.note(velocity);
             } else {
                 let grain = (&mut positions[row], &mut velocities[row], block.ids[row]);
                 targets[row] = self.meet_the_edge(grain, &mut tally.counts);
+                speeds.note(velocities[row]);
             }
-            speeds.note(velocities[row]);
         }
         tally.speeds.add(&speeds);
     }
