@@ -1,13 +1,7 @@
 //! Structure of arrays: one column per quantity, all in the same order.
 
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
-
-use rayon::prelude::*;
-
+use super::scatter::Labels;
 use crate::space::Vector;
-
-/// Grains a thread gathers at a time: a few pages of each column.
-const GATHER_SPAN: usize = 4096;
 
 /// The columns of a gas; row `i` of each belongs to the same grain.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,12 +38,16 @@ impl<V: Vector> Columns<V> {
 
     /// Takes the length and the optional columns of `other`; the content is unspecified.
     pub fn match_shape(&mut self, other: &Self) {
-        let n = other.len();
+        self.resize(other.len(), &other.labels());
+    }
+
+    /// Takes length `n` and the optional columns of `labels`; the content is unspecified.
+    pub fn resize(&mut self, n: usize, labels: &Labels<'_, V>) {
         self.positions.resize(n, V::ZERO);
         self.velocities.resize(n, V::ZERO);
         self.ids.resize(n, 0);
-        resize_optional(&mut self.spins, other.spins.is_some(), n);
-        resize_optional(&mut self.species, other.species.is_some(), n);
+        resize_optional(&mut self.spins, labels.spins.is_some(), n);
+        resize_optional(&mut self.species, labels.species.is_some(), n);
     }
 
     /// Takes identities, spins and species over from `other`, which gets those held here
@@ -86,23 +84,9 @@ impl<V: Vector> Columns<V> {
         }
     }
 
-    /// Fills row `k` with row `order[k]` of `source`, for all `k`; both have the same shape.
-    pub fn gather(&mut self, source: &Self, order: &[AtomicU32]) {
-        self.positions
-            .par_chunks_mut(GATHER_SPAN)
-            .zip(self.velocities.par_chunks_mut(GATHER_SPAN))
-            .zip(self.ids.par_chunks_mut(GATHER_SPAN))
-            .zip(order.par_chunks(GATHER_SPAN))
-            .for_each(|(((positions, velocities), ids), order)| {
-                for (k, from) in order.iter().enumerate() {
-                    let from = from.load(Relaxed) as usize;
-                    positions[k] = source.positions[from];
-                    velocities[k] = source.velocities[from];
-                    ids[k] = source.ids[from];
-                }
-            });
-        gather_optional(&mut self.spins, &source.spins, order);
-        gather_optional(&mut self.species, &source.species, order);
+    /// Angular velocities and species, where there are any.
+    pub fn labels(&self) -> Labels<'_, V> {
+        Labels { spins: self.spins.as_deref(), species: self.species.as_deref() }
     }
 }
 
@@ -111,19 +95,5 @@ fn resize_optional<T: Copy + Default>(column: &mut Option<Vec<T>>, wanted: bool,
         column.get_or_insert_default().resize(n, T::default());
     } else {
         *column = None;
-    }
-}
-
-fn gather_optional<T: Copy + Send + Sync>(
-    column: &mut Option<Vec<T>>,
-    source: &Option<Vec<T>>,
-    order: &[AtomicU32],
-) {
-    if let (Some(column), Some(source)) = (column, source) {
-        column
-            .par_iter_mut()
-            .with_min_len(GATHER_SPAN)
-            .zip(order)
-            .for_each(|(value, from)| *value = source[from.load(Relaxed) as usize]);
     }
 }

@@ -3,19 +3,14 @@
 //! Initial states make a gas, engines advance it, observers read it, logs store it.
 
 use std::ops::Range;
-use std::sync::atomic::Ordering::Relaxed;
-
-use rayon::prelude::*;
 
 use super::clock::Clock;
 use super::columns::Columns;
 use super::grain::Grain;
 use super::grid::Grid;
+use super::scatter::Labels;
 use super::sort::CountingSort;
 use crate::space::Vector;
-
-/// Grains that a thread fills in at a time.
-const REFILL_SPAN: usize = 4096;
 
 /// Grains in cell order, with the box that they live in and their time.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +35,8 @@ pub struct SortSpace<V: Vector> {
     pub spare: Columns<V>,
     /// `[grain]`: the cell each grain goes to; [`super::sort::REMOVED`] takes it out.
     pub cells: Vec<u32>,
-    sort: CountingSort,
+    /// Counts of the grains by the cell they go to.
+    pub sort: CountingSort,
 }
 
 impl<V: Vector> SortSpace<V> {
@@ -154,7 +150,7 @@ impl<V: Vector> Gas<V> {
     }
 
     /// The grid, the offsets, and the columns to be changed by an engine, which then
-    /// owes a sort ([`Gas::sort_through`] or [`Gas::sort_from_spare`]).
+    /// owes a sort ([`Gas::sort_through`] or [`Gas::sort_counted`]).
     pub fn parts_mut(&mut self) -> (&Grid<V>, &[u32], &mut Columns<V>) {
         (&self.grid, &self.offsets, &mut self.columns)
     }
@@ -173,56 +169,34 @@ impl<V: Vector> Gas<V> {
 
     /// Brings the own columns into the order of `space.cells`, through the spare ones.
     pub fn sort_through(&mut self, space: &mut SortSpace<V>) {
-        let order = space.sort.order(&space.cells[..self.columns.len()], &mut self.offsets);
+        space.sort.count(&space.cells[..self.columns.len()], self.grid.number_of_cells());
+        self.sort_counted(space);
+    }
+
+    /// [`Gas::sort_through`] after an engine has counted `space.cells` with `space.sort`.
+    pub fn sort_counted(&mut self, space: &mut SortSpace<V>) {
+        let kept = space.sort.accumulate(&mut self.offsets);
         space.spare.match_shape(&self.columns);
-        space.spare.truncate(order.len());
-        space.spare.gather(&self.columns, order);
+        space.spare.truncate(kept);
+        let columns = &self.columns;
+        let grain = |row| (columns.positions[row], columns.velocities[row], columns.ids[row]);
+        space.sort.fill(&space.cells[..columns.len()], &mut space.spare, columns.labels(), grain);
         std::mem::swap(&mut self.columns, &mut space.spare);
     }
 
     /// Replaces all grains by those that `grain` makes for each row of `space.cells`: position, velocity,
-    /// identity. They come into the order of `space.cells`.
+    /// identity, with their `labels`. They come into the order of `space.cells`.
     pub fn refill(
         &mut self,
         space: &mut SortSpace<V>,
+        labels: Labels<'_, V>,
         grain: impl Fn(&Grid<V>, usize) -> (V, V, u32) + Sync,
     ) {
-        let order = space.sort.order(&space.cells, &mut self.offsets);
-        let (grid, columns) = (&self.grid, &mut self.columns);
-        columns.positions.resize(order.len(), V::ZERO);
-        columns.velocities.resize(order.len(), V::ZERO);
-        columns.ids.resize(order.len(), 0);
-        (columns.positions.par_iter_mut())
-            .zip(columns.velocities.par_iter_mut())
-            .zip(columns.ids.par_iter_mut())
-            .zip(order)
-            .with_min_len(REFILL_SPAN)
-            .for_each(|(((position, velocity), id), row)| {
-                (*position, *velocity, *id) = grain(grid, row.load(Relaxed) as usize);
-            });
-    }
-
-    /// After [`Gas::refill`]: takes over spins and species, where there are any, of the same rows.
-    pub fn refill_labels(
-        &mut self,
-        space: &mut SortSpace<V>,
-        spins: Option<&[V::Spin]>,
-        species: Option<&[u8]>,
-    ) {
-        if spins.is_none() && species.is_none() {
-            return;
-        }
-        let order = space.sort.order(&space.cells, &mut self.offsets);
-        let rows = || order.iter().map(|row| row.load(Relaxed) as usize);
-        self.columns.spins = spins.map(|spins| rows().map(|row| spins[row]).collect());
-        self.columns.species = species.map(|species| rows().map(|row| species[row]).collect());
-    }
-
-    /// Takes over the spare columns, written by an engine row by row, in the order of `space.cells`.
-    pub fn sort_from_spare(&mut self, space: &mut SortSpace<V>) {
-        let order = space.sort.order(&space.cells[..space.spare.len()], &mut self.offsets);
-        self.columns.truncate(order.len());
-        self.columns.gather(&space.spare, order);
+        space.sort.count(&space.cells, self.grid.number_of_cells());
+        let kept = space.sort.accumulate(&mut self.offsets);
+        self.columns.resize(kept, &labels);
+        let grid = &self.grid;
+        space.sort.fill(&space.cells, &mut self.columns, labels, |row| grain(grid, row));
     }
 }
 

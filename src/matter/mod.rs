@@ -7,5 +7,6 @@ pub mod gas;
 pub mod grain;
 pub mod grid;
 pub mod overlaps;
+pub mod scatter;
 pub mod sort;
 pub mod state_hash;

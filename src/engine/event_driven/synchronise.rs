@@ -8,6 +8,7 @@ use crate::engine::EngineError;
 use crate::matter::clock::Clock;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::grid::Grid;
+use crate::matter::scatter::Labels;
 use crate::matter::sort::REMOVED;
 use crate::space::Vector;
 
@@ -47,11 +48,11 @@ impl<V: Vector> World<V> {
         if let Some(row) = lost.flatten().min() {
             return Err(self.not_finite(row, space.cells[row], now));
         }
-        gas.refill(space, |grid, row| {
+        let labels = Labels { spins: self.spins.as_deref(), species: self.species.as_deref() };
+        gas.refill(space, labels, |grid, row| {
             let (position, velocity) = self.seen(row, now, grid);
             (position, velocity, self.ids[row])
         });
-        gas.refill_labels(space, self.spins.as_deref(), self.species.as_deref());
         Ok(())
     }
 

@@ -3,10 +3,17 @@
 use std::ops::Range;
 
 use crate::matter::columns::Columns;
+use crate::matter::sort::number_of_parts;
 use crate::space::Vector;
 
-/// Cells of a block. It is fixed: sums are added block by block, so it is part of the bits.
+/// Cells of a block. It is fixed: sums are added block by block, so it is part of the bits. What a block holds
+/// fits into the nearer caches.
 const CELLS_PER_BLOCK: usize = 256;
+
+/// Blocks that one thread takes one after another.
+pub(crate) struct Part<'a, V: Vector> {
+    pub(crate) blocks: Vec<Block<'a, V>>,
+}
 
 /// A span of cells and the rows that belong to it.
 #[derive(Debug)]
@@ -25,18 +32,37 @@ pub(crate) struct Block<'a, V: Vector> {
     pub(crate) targets: &'a mut [u32],
 }
 
-/// Cuts all cells into blocks of a fixed number of cells; blocks without grains are left out.
-pub(crate) fn blocks<'a, V: Vector>(
+/// Cuts all cells into blocks of a fixed number of cells, and those into parts with about the same number of
+/// grains; blocks without grains are left out.
+pub(crate) fn parts<'a, V: Vector>(
     offsets: &[u32],
     columns: &'a mut Columns<V>,
     targets: &'a mut [u32],
-) -> Vec<Block<'a, V>> {
-    let cells = offsets.len() - 1;
+) -> Vec<Part<'a, V>> {
+    let (cells, grains) = (offsets.len() - 1, columns.len());
     let starts = (0..cells).step_by(CELLS_PER_BLOCK);
     let spans = starts.map(|first| first as u32..(first + CELLS_PER_BLOCK).min(cells) as u32);
     let mut blocks = cut(spans, offsets, columns, targets);
     blocks.retain(|block| !block.ids.is_empty());
-    blocks
+    let parts = number_of_parts(grains, cells);
+    let mut blocks = blocks.into_iter().peekable();
+    (1..=parts)
+        .map(|part| {
+            let end = grains * part / parts;
+            let blocks = std::iter::from_fn(|| blocks.next_if(|block| block.rows().end <= end || part == parts));
+            Part { blocks: blocks.collect() }
+        })
+        .collect()
+}
+
+/// The rows of each part, contiguous from 0 on.
+pub(crate) fn rows_of<V: Vector>(parts: &[Part<'_, V>]) -> Vec<Range<usize>> {
+    let mut first = 0;
+    let rows = parts.iter().map(|part| {
+        let end = part.blocks.last().map_or(first, |block| block.rows().end);
+        std::mem::replace(&mut first, end)..end
+    });
+    rows.collect()
 }
 
 /// Cuts the columns at the given contiguous spans of cells, the first of which starts at cell 0.
@@ -66,9 +92,14 @@ pub(crate) fn cut<'a, V: Vector>(
 }
 
 impl<V: Vector> Block<'_, V> {
+    /// All its rows.
+    fn rows(&self) -> Range<usize> {
+        self.first_row..self.first_row + self.ids.len()
+    }
+
     /// The rows of `cell`, counted from the start of the block.
     #[inline(always)]
-    pub(crate) fn rows(&self, cell: u32, offsets: &[u32]) -> Range<usize> {
+    pub(crate) fn rows_of(&self, cell: u32, offsets: &[u32]) -> Range<usize> {
         let cell = cell as usize;
         offsets[cell] as usize - self.first_row..offsets[cell + 1] as usize - self.first_row
     }

@@ -1,18 +1,28 @@
-//! Pair collisions inside one cell (Nanbu's form of DSMC; Müller 2001, section 2.4.1).
+//! Pair collisions inside cells (Nanbu's form of DSMC; Müller 2001, section 2.4.1).
+//!
+//! The cells of a block draw their candidate pairs first; then all candidates are put to the test. So
+//! the processor draws while it need not know the outcome of a test, which nobody can predict.
+
+use std::ops::Range;
 
 use super::Step;
+use super::blocks::Block;
+use super::displacement::Displacement;
+use super::enskog::EnskogFactors;
 use super::laws::Laws;
-use super::rules::Transfer;
+use super::speed_bound::RelativeSpeeds;
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
+use crate::matter::grid::Grid;
 use crate::random::{Phase, PhaseStreams, Stream};
 use crate::space::Vector;
 
 /// Pair collisions of one step, the same for all cells.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairCollisions<R> {
+#[derive(Clone, Debug)]
+pub(crate) struct PairCollisions<'a, V: Vector, R> {
     restitution: R,
     mass: f64,
+    enskog: EnskogFactors<'a, V>,
     /// σ τ / (2 V_c): candidates per ordered pair and unit of relative speed.
     candidates_per_speed: f64,
     /// σ/(2 V_c) times the mean relative speed at unit thermal speed.
@@ -21,190 +31,175 @@ pub(crate) struct PairCollisions<R> {
     streams: PhaseStreams,
 }
 
-/// Along what a collision displaces its partners, and how far.
-#[derive(Clone, Copy, Debug)]
-enum Displacement {
-    None,
-    MomentumChange { distance: f64 },
-    RelativeVelocity { distance: f64 },
-}
-
 /// A grain pair that has just collided and the way its first partner should be displaced;
 /// the second goes the opposite way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Displaced<V> {
-    /// Places of the partners inside the cell.
+    /// Rows of the partners, counted from the start of their block.
     pub(crate) pair: (usize, usize),
     /// Displacement of the first partner [length].
     pub(crate) shift: V,
 }
 
-/// The box in velocity space that holds all velocities of a cell. Its diagonal bounds their relative speeds.
-struct SpeedBound<V> {
-    /// One of the velocities: the box is kept relative to it.
-    pivot: V,
-    lowest: V,
-    highest: V,
-    /// The diagonal, squared [length²/time²].
-    square: f64,
+/// What the cells of a block have drawn.
+#[derive(Debug)]
+struct Draws {
+    candidates: Vec<Candidate>,
+    cells: Vec<Drawn>,
 }
 
-impl<R: Restitution> PairCollisions<R> {
-    pub(crate) fn new<V: Vector>(laws: &Laws<V, R>, cell_volume: f64, step: Step, phase: Phase) -> Self {
-        let per_pair = V::cross_section(laws.grain.diameter) / (2.0 * cell_volume);
+/// A candidate pair.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// Rows, counted from the start of the block.
+    pair: (u32, u32),
+    /// Its cell, as a place in [`Draws::cells`].
+    cell: u32,
+    /// The pair collides where its squared relative speed exceeds this [length²/time²].
+    threshold: f64,
+}
+
+/// A cell that has drawn candidates.
+#[derive(Clone, Debug)]
+struct Drawn {
+    /// Bound on the squared relative speeds, before any collision [length²/time²].
+    bound: f64,
+    /// What the cell draws from here on.
+    random: Stream,
+}
+
+impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
+    pub(crate) fn new(laws: &Laws<V, R>, grid: &'a Grid<V>, offsets: &'a [u32], step: Step) -> Self {
+        let per_pair = V::cross_section(laws.grain.diameter) / (2.0 * grid.cell_volume());
         PairCollisions {
             restitution: laws.restitution,
             mass: laws.grain.mass,
+            enskog: EnskogFactors::new(laws.dense, grid, offsets, laws.grain.diameter),
             candidates_per_speed: per_pair * step.duration,
             rate_per_speed: per_pair * V::MEAN_RELATIVE_SPEED,
             displacement: Displacement::of(laws),
-            streams: laws.streams.at(step.number, phase),
+            streams: laws.streams.at(step.number, Phase::Collisions),
         }
     }
 
-    /// Collides the grains of `cell`, whose Enskog factor is `enskog_factor` χ. `displace` is told of
-    /// every collision that should displace its partners, and says whether it did.
+    /// Collides the grains of a block. `displace` is told of every collision that should displace its
+    /// partners, with the positions of the block, and says whether it did.
     ///
     /// M = χ N(N − 1) σ v_max τ/(2V_c) candidates, rounded at random; a pair collides with
     /// probability |v_i − v_j|/v_max (Müller 2001, 2.34; the test of 2.38 is printed the wrong way round).
     #[inline]
-    pub(crate) fn collide<V: Vector>(
+    pub(crate) fn collide(
         &self,
-        cell: u32,
-        enskog_factor: f64,
-        velocities: &mut [V],
+        block: &mut Block<'_, V>,
+        offsets: &[u32],
         tally: &mut Tally<V>,
-        mut displace: impl FnMut(Displaced<V>, &[V]) -> bool,
+        mut displace: impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
-        let grains = velocities.len() as u32;
-        if grains < 2 {
-            return;
-        }
-        let (mut bound, sum_of_squares) = SpeedBound::of(velocities);
-        if !sum_of_squares.is_finite() {
-            // Endless speeds would mean endless candidates; the end of the step says what is wrong.
-            return;
-        }
-        let pairs = enskog_factor * f64::from(grains) * f64::from(grains - 1);
-        tally.collision_rate += self.expected_rate::<V>(pairs, grains, sum_of_squares);
-        let mut random = self.streams.stream(u64::from(cell));
-        let mut candidates = random.round(pairs * self.candidates_per_speed * bound.square.sqrt());
-        while candidates > 0 {
-            candidates -= 1;
-            tally.counts.candidates += 1;
-            let (pair, z) = random.pair_and_uniform(grains);
-            let relative = velocities[pair.0] - velocities[pair.1];
+        let mut draws = self.draw(block, offsets, tally);
+        tally.counts.candidates += draws.candidates.len() as u64;
+        for &Candidate { pair, cell, threshold } in &draws.candidates {
+            let pair = (pair.0 as usize, pair.1 as usize);
+            let relative = block.velocities[pair.0] - block.velocities[pair.1];
             let square = relative.length_squared();
-            if square <= z * z * bound.square {
+            if square <= threshold {
                 continue;
             }
-            tally.counts.collisions += 1;
-            let (change, after) = self.exchange(pair, relative, velocities, &mut random);
-            if let Some(shift) = self.displacement.shift(change, after)
-                && displace(Displaced { pair, shift }, velocities)
-            {
-                tally.counts.carried_momentum += self.mass * after.dot(shift);
+            let drawn = &mut draws.cells[cell as usize];
+            let mut times = 1;
+            if square > drawn.bound {
+                times += drawn.excess(square);
             }
-            let growth = bound.raise(velocities[pair.0]).max(bound.raise(velocities[pair.1]));
-            if growth > 1.0 && candidates > 0 {
-                candidates = random.round(candidates as f64 * growth);
+            for _ in 0..times {
+                self.collide_pair(pair, block, &mut drawn.random, tally, &mut displace);
             }
         }
     }
 
-    /// Expected collisions per time in a cell with these `velocities` [1/time].
-    pub(crate) fn rate<V: Vector>(&self, enskog_factor: f64, velocities: &[V]) -> f64 {
+    /// Exchanges momentum along a random contact normal; the normal relative velocity becomes −r times itself.
+    #[inline(always)]
+    fn collide_pair(
+        &self,
+        pair: (usize, usize),
+        block: &mut Block<'_, V>,
+        random: &mut Stream,
+        tally: &mut Tally<V>,
+        displace: &mut impl FnMut(Displaced<V>, &mut [V]) -> bool,
+    ) {
+        let relative = block.velocities[pair.0] - block.velocities[pair.1];
+        let elastic = V::exchange(relative, random);
+        let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
+        block.velocities[pair.0] += change;
+        block.velocities[pair.1] -= change;
+        tally.counts.collisions += 1;
+        let after = relative + change * 2.0;
+        if let Some(shift) = self.displacement.shift(change, after)
+            && displace(Displaced { pair, shift }, block.positions)
+        {
+            tally.counts.carried_momentum += self.mass * after.dot(shift);
+        }
+    }
+
+    /// Draws the candidates of all cells of the block.
+    fn draw(&self, block: &Block<'_, V>, offsets: &[u32], tally: &mut Tally<V>) -> Draws {
+        let mut draws = Draws { candidates: Vec::with_capacity(block.ids.len()), cells: Vec::with_capacity(block.cells.len()) };
+        for cell in block.cells.clone() {
+            let rows = block.rows_of(cell, offsets);
+            let grains = rows.len() as u32;
+            if grains < 2 {
+                continue;
+            }
+            let speeds = RelativeSpeeds::of(&block.velocities[rows.clone()]);
+            if !speeds.sum_of_squares.is_finite() {
+                // Endless speeds would mean endless candidates; the end of the step says what is wrong.
+                continue;
+            }
+            let pairs = self.enskog.of(cell, rows.len()) * f64::from(grains) * f64::from(grains - 1);
+            tally.collision_rate += self.expected_rate(pairs, grains, speeds.sum_of_squares);
+            let expected = pairs * self.candidates_per_speed * speeds.largest_square.sqrt();
+            draws.add(rows, speeds.largest_square, expected, self.streams.stream(u64::from(cell)));
+        }
+        draws
+    }
+
+    /// Expected collisions per time in `cell`, whose grains have these `velocities` [1/time].
+    pub(crate) fn rate(&self, cell: u32, velocities: &[V]) -> f64 {
         let grains = velocities.len() as u32;
         if grains < 2 {
             return 0.0;
         }
-        let pairs = enskog_factor * f64::from(grains) * f64::from(grains - 1);
-        self.expected_rate::<V>(pairs, grains, SpeedBound::of(velocities).1)
+        let pairs = self.enskog.of(cell, velocities.len()) * f64::from(grains) * f64::from(grains - 1);
+        self.expected_rate(pairs, grains, RelativeSpeeds::of(velocities).sum_of_squares)
     }
 
     /// From the unbiased temperature of the cell, Σ|v − v_c|²/(D(N − 1)) per mass.
     #[inline(always)]
-    fn expected_rate<V: Vector>(&self, pairs: f64, grains: u32, sum_of_squares: f64) -> f64 {
+    fn expected_rate(&self, pairs: f64, grains: u32, sum_of_squares: f64) -> f64 {
         let thermal_square = sum_of_squares / (V::DIMENSION as f64 * f64::from(grains - 1));
         pairs * self.rate_per_speed * thermal_square.sqrt()
     }
+}
 
-    /// Exchanges momentum along a random contact normal; the normal relative velocity becomes
-    /// −r times itself. Returns the change of the first velocity and the relative velocity afterwards.
+impl Draws {
+    /// Draws the candidates of one more cell, `expected` of them on the average.
     #[inline(always)]
-    fn exchange<V: Vector>(
-        &self,
-        pair: (usize, usize),
-        relative: V,
-        velocities: &mut [V],
-        random: &mut Stream,
-    ) -> (V, V) {
-        let elastic = V::exchange(relative, random);
-        let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
-        velocities[pair.0] += change;
-        velocities[pair.1] -= change;
-        (change, relative + change * 2.0)
+    fn add(&mut self, rows: Range<usize>, bound: f64, expected: f64, mut random: Stream) {
+        let cell = self.cells.len() as u32;
+        let (first_row, grains) = (rows.start as u32, rows.len() as u32);
+        for _ in 0..random.round(expected) {
+            let ((first, second), z) = random.pair_and_uniform(grains);
+            let pair = (first_row + first as u32, first_row + second as u32);
+            self.candidates.push(Candidate { pair, cell, threshold: z * z * bound });
+        }
+        self.cells.push(Drawn { bound, random });
     }
 }
 
-impl Displacement {
-    fn of<V: Vector, R: Restitution>(laws: &Laws<V, R>) -> Self {
-        let diameter = laws.grain.diameter;
-        match laws.dense {
-            None => Displacement::None,
-            Some(dense) => match dense.transfer {
-                Transfer::MomentumChange => Displacement::MomentumChange { distance: diameter },
-                Transfer::Corrected => {
-                    Displacement::RelativeVelocity { distance: dense.displacement_ratio * diameter }
-                }
-            },
-        }
-    }
-
-    /// The way of the first partner, whose velocity has changed by `change`.
-    #[inline(always)]
-    fn shift<V: Vector>(self, change: V, after: V) -> Option<V> {
-        let (direction, distance) = match self {
-            Displacement::None => return None,
-            Displacement::MomentumChange { distance } => (change, distance),
-            Displacement::RelativeVelocity { distance } => (after, distance),
-        };
-        let length = direction.length();
-        (length > 0.0).then(|| direction * (distance / length))
-    }
-}
-
-impl<V: Vector> SpeedBound<V> {
-    /// The bound, and the sum of squared deviations from the mean.
-    #[inline(always)]
-    fn of(velocities: &[V]) -> (Self, f64) {
-        let pivot = velocities[0];
-        let (mut lowest, mut highest) = (V::ZERO, V::ZERO);
-        let (mut sum, mut squares) = (V::ZERO, 0.0);
-        for &velocity in &velocities[1..] {
-            let relative = velocity - pivot;
-            lowest = lowest.lower(relative);
-            highest = highest.upper(relative);
-            sum += relative;
-            squares += relative.length_squared();
-        }
-        let about_mean = squares - sum.length_squared() / velocities.len() as f64;
-        let square = (highest - lowest).length_squared();
-        (SpeedBound { pivot, lowest, highest, square }, if about_mean < 0.0 { 0.0 } else { about_mean })
-    }
-
-    /// Makes the bound hold for `velocity` too. Returns by which factor it grew, so that
-    /// candidates still to come can be multiplied: acceptance never exceeds one.
-    #[inline(always)]
-    fn raise(&mut self, velocity: V) -> f64 {
-        let relative = velocity - self.pivot;
-        let (lowest, highest) = (self.lowest.lower(relative), self.highest.upper(relative));
-        if lowest == self.lowest && highest == self.highest {
-            return 1.0;
-        }
-        let before = self.square;
-        (self.lowest, self.highest) = (lowest, highest);
-        self.square = (highest - lowest).length_squared();
-        (self.square / before).sqrt()
+impl Drawn {
+    /// How many times more a pair collides that earlier collisions of the step have made faster than the bound: on
+    /// the average by how much |v_i − v_j|/v_max exceeds one.
+    #[cold]
+    #[inline(never)]
+    fn excess(&mut self, square: f64) -> u64 {
+        self.random.round((square / self.bound).sqrt() - 1.0)
     }
 }

@@ -10,7 +10,6 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::blocks::{Block, cut};
 use super::cell_pairs::{Displaced, PairCollisions};
-use super::enskog::EnskogFactors;
 use super::laws::Room;
 use super::parallel;
 use super::rules::DisplacementRule;
@@ -25,8 +24,7 @@ use crate::space::Vector;
 pub(crate) struct ColouredPass<'a, V: Vector, R: Restitution> {
     pub(crate) grid: &'a Grid<V>,
     pub(crate) offsets: &'a [u32],
-    pub(crate) collisions: PairCollisions<R>,
-    pub(crate) enskog: EnskogFactors<'a, V>,
+    pub(crate) collisions: PairCollisions<'a, V, R>,
     pub(crate) room: Room<V>,
     pub(crate) capacity: u32,
     pub(crate) rule: DisplacementRule,
@@ -112,19 +110,12 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
     #[inline]
     fn cell(&self, home: [u32; 3], block: &mut Block<'_, V>, tally: &mut Tally<V>) {
         let cell = self.grid.cell_at(home);
-        let rows = block.rows(cell, self.offsets);
+        let rows = block.rows_of(cell, self.offsets);
         block.targets[rows.clone()].fill(cell);
         if rows.len() < 2 {
             return;
         }
-        let positions = &mut block.positions[rows.clone()];
-        let cells = &mut block.targets[rows.clone()];
-        let factor = self.enskog.of(cell, rows.len());
-        let velocities = &mut block.velocities[rows];
-        self.collisions.collide(cell, factor, velocities, tally, |displaced, _| {
-            self.occupancy[cell as usize].load(Relaxed) < self.capacity
-                && self.displace(home, displaced, positions, cells)
-        });
+        let _ = tally; todo!()
     }
 
     /// Displaces both partners or none.

@@ -96,6 +96,12 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
         self.grid.cell_of(position)
     }
 
+    /// The same for a position that is free ([`Flights::is_free`]), and so inside the box.
+    #[inline(always)]
+    pub(crate) fn cell_inside(&self, position: V) -> u32 {
+        self.grid.cell_inside(position)
+    }
+
     /// Whether `position` lies beyond an open side.
     pub(crate) fn is_out(&self, position: V) -> bool {
         (0..V::DIMENSION).any(|axis| {

@@ -1,9 +1,8 @@
 //! The step of the gas engines, DSMC and CBA: collide a cell, move its grains, one pass over memory.
 
 use super::Step;
-use super::blocks::{Block, blocks};
+use super::blocks::{Block, parts, rows_of};
 use super::cell_pairs::{Displaced, PairCollisions};
-use super::enskog::EnskogFactors;
 use super::flight::Flights;
 use super::laws::{Laws, Room};
 use super::parallel;
@@ -11,14 +10,12 @@ use super::tally::{Speeds, Tally};
 use crate::engine::report::Counts;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
-use crate::matter::sort::REMOVED;
-use crate::random::Phase;
+use crate::matter::sort::{Counter, REMOVED};
 use crate::space::Vector;
 
 /// The parts of a gas step.
 struct GasPass<'a, V: Vector, R: Restitution> {
-    collisions: PairCollisions<R>,
-    enskog: EnskogFactors<'a, V>,
+    collisions: PairCollisions<'a, V, R>,
     room: Room<V>,
     flights: Flights<'a, V, R>,
 }
@@ -32,32 +29,25 @@ pub(crate) fn collide_and_move<V: Vector, R: Restitution>(
 ) -> Tally<V> {
     let (grid, offsets, columns) = gas.parts_mut();
     let pass = GasPass {
-        collisions: PairCollisions::new(laws, grid.cell_volume(), step, Phase::Collisions),
-        enskog: EnskogFactors::new(laws.dense, grid, offsets, laws.grain.diameter),
+        collisions: PairCollisions::new(laws, grid, offsets, step),
         room: Room::at(grid, &laws.boundary, step.start),
         flights: Flights::new(laws, grid, step),
     };
-    let grains = columns.len();
-    let blocks = blocks(offsets, columns, &mut space.cells);
-    Tally::total(parallel::map(grains, blocks, |block| pass.block(block, offsets)))
+    let parts = parts(offsets, columns, &mut space.cells);
+    let counters = space.sort.begin(rows_of(&parts), grid.number_of_cells());
+    let tallies = parallel::each(parts.into_iter().zip(counters), |(part, mut counter)| {
+        part.blocks.into_iter().map(|block| pass.block(block, offsets, &mut counter)).collect::<Vec<_>>()
+    });
+    Tally::total(tallies.into_iter().flatten())
 }
 
 impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
-    fn block(&self, mut block: Block<'_, V>, offsets: &[u32]) -> Tally<V> {
+    fn block(&self, mut block: Block<'_, V>, offsets: &[u32], counter: &mut Counter<'_>) -> Tally<V> {
         let mut tally = Tally::default();
-        for cell in block.cells.clone() {
-            let rows = block.rows(cell, offsets);
-            if rows.is_empty() {
-                continue;
-            }
-            let positions = &mut block.positions[rows.clone()];
-            let velocities = &mut block.velocities[rows];
-            let factor = self.enskog.of(cell, velocities.len());
-            self.collisions.collide(cell, factor, velocities, &mut tally, |displaced, _| {
-                self.displace(displaced, positions)
-            });
-        }
-        self.advect(&mut block, &mut tally);
+        self.collisions.collide(&mut block, offsets, &mut tally, |displaced, positions| {
+            self.displace(displaced, positions)
+        });
+        self.advect(&mut block, &mut tally, counter);
         tally
     }
 
@@ -74,7 +64,7 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
     }
 
     /// Moves all grains of the block.
-    fn advect(&self, block: &mut Block<'_, V>, tally: &mut Tally<V>) {
+    fn advect(&self, block: &mut Block<'_, V>, tally: &mut Tally<V>, counter: &mut Counter<'_>) {
         let rows = block.ids.len();
         let (positions, velocities) = (&mut block.positions[..rows], &mut block.velocities[..rows]);
         let targets = &mut block.targets[..rows];
@@ -83,12 +73,15 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
             let (position, velocity) = self.flights.free(positions[row], velocities[row]);
             if self.flights.is_free(position) {
                 (positions[row], velocities[row]) = (position, velocity);
-                targets[row] = self.flights.cell_of(position);
+                let target = self.flights.cell_inside(position);
+                targets[row] = target;
+                counter.add(target);
                 // Not read back from the column, whose store would still be on its way.
                 speeds.note(velocity);
             } else {
                 let grain = (&mut positions[row], &mut velocities[row], block.ids[row]);
                 targets[row] = self.meet_the_edge(grain, &mut tally.counts);
+                counter.add(targets[row]);
                 speeds.note(velocities[row]);
             }
         }

@@ -8,6 +8,7 @@ mod blocks;
 mod cell_collisions;
 mod cell_pairs;
 mod coloured_pass;
+mod displacement;
 mod enskog;
 mod excluded_volume;
 mod flight;
@@ -15,6 +16,7 @@ mod gas_pass;
 pub mod laws;
 mod parallel;
 pub mod rules;
+mod speed_bound;
 mod tally;
 mod time_step;
 
@@ -64,7 +66,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("pair collisions and move");
         let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step);
         laps.start("sort");
-        gas.sort_through(&mut self.space);
+        gas.sort_counted(&mut self.space);
         tally
     }
 
@@ -81,7 +83,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("admission");
         volume.admit(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("sort");
-        gas.sort_from_spare(&mut self.space);
+        todo!();
         tally
     }
 }

@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-/// Below this many grains, waking threads costs more than they save.
-const FEWEST_GRAINS: usize = 8192;
+use crate::matter::sort::FEWEST_GRAINS;
 
 /// `work` done on every item, results in the order of the items; shared among threads when
 /// there are enough `grains`.
@@ -16,6 +15,19 @@ pub(crate) fn map<T: Send, R: Send>(
         items.into_iter().map(work).collect()
     } else {
         items.into_par_iter().map(work).collect()
+    }
+}
+
+/// `work` done on every one of a few large items, by a thread each.
+pub(crate) fn each<T: Send, R: Send>(
+    items: impl ExactSizeIterator<Item = T>,
+    work: impl Fn(T) -> R + Sync + Send,
+) -> Vec<R> {
+    if items.len() < 2 {
+        items.map(work).collect()
+    } else {
+        let items: Vec<T> = items.collect();
+        items.into_par_iter().with_max_len(1).map(work).collect()
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::Step;
 use super::cell_pairs::PairCollisions;
-use super::enskog::EnskogFactors;
 use super::laws::Laws;
 use super::rules::TimeStep;
 use super::tally::Tally;
@@ -10,7 +9,6 @@ use crate::engine::{EngineError, EngineState};
 use crate::law::kinetic_theory;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::Gas;
-use crate::random::Phase;
 use crate::space::Vector;
 
 /// Below this mean occupancy, cells hold too few pairs to tell their temperature.
@@ -92,12 +90,11 @@ fn global_collision_rate<V: Vector, R: Restitution>(
 /// Adds up what [`pace`] needs from a gas that no step has looked at yet.
 pub(crate) fn measure<V: Vector, R: Restitution>(laws: &Laws<V, R>, gas: &Gas<V>) -> Tally<V> {
     let step = Step { number: 0, start: 0.0, duration: 0.0 };
-    let collisions = PairCollisions::new(laws, gas.grid().cell_volume(), step, Phase::Collisions);
-    let enskog = EnskogFactors::new(laws.dense, gas.grid(), gas.offsets(), laws.grain.diameter);
+    let collisions = PairCollisions::new(laws, gas.grid(), gas.offsets(), step);
     let mut tally = Tally::default();
     for cell in 0..gas.grid().number_of_cells() as u32 {
         let velocities = &gas.velocities()[gas.rows(cell)];
-        tally.collision_rate += collisions.rate(enskog.of(cell, velocities.len()), velocities);
+        tally.collision_rate += collisions.rate(cell, velocities);
         velocities.iter().for_each(|&velocity| tally.speeds.note(velocity));
     }
     tally
