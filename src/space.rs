@@ -105,12 +105,12 @@ pub trait Vector:
     /// The lower of each two components.
     #[inline(always)]
     fn lower(self, other: Self) -> Self {
-        Self::from_fn(|axis| if other[axis] < self[axis] { other[axis] } else { self[axis] })
+        Self::from_fn(|axis| if self[axis] < other[axis] { self[axis] } else { other[axis] })
     }
     /// The upper of each two components.
     #[inline(always)]
     fn upper(self, other: Self) -> Self {
-        Self::from_fn(|axis| if other[axis] > self[axis] { other[axis] } else { self[axis] })
+        Self::from_fn(|axis| if self[axis] > other[axis] { self[axis] } else { other[axis] })
     }
     /// Whether every component is finite.
     fn is_finite(self) -> bool {

@@ -149,12 +149,12 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
                 continue;
             }
             let speeds = RelativeSpeeds::of(&block.velocities[rows.clone()]);
-            if !speeds.sum_of_squares.is_finite() {
+            if !speeds.sum_over_pairs.is_finite() {
                 // Endless speeds would mean endless candidates; the end of the step says what is wrong.
                 continue;
             }
             let pairs = self.enskog.of(cell, rows.len()) * f64::from(grains) * f64::from(grains - 1);
-            tally.collision_rate += self.expected_rate(pairs, grains, speeds.sum_of_squares);
+            tally.collision_rate += self.expected_rate(pairs, grains, speeds);
             let expected = pairs * self.candidates_per_speed * speeds.largest_square.sqrt();
             draws.add(rows, speeds.largest_square, expected, self.streams.stream(u64::from(cell)));
         }
@@ -168,13 +168,14 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
             return 0.0;
         }
         let pairs = self.enskog.of(cell, velocities.len()) * f64::from(grains) * f64::from(grains - 1);
-        self.expected_rate(pairs, grains, RelativeSpeeds::of(velocities).sum_of_squares)
+        self.expected_rate(pairs, grains, RelativeSpeeds::of(velocities))
     }
 
     /// From the unbiased temperature of the cell, Σ|v − v_c|²/(D(N − 1)) per mass.
     #[inline(always)]
-    fn expected_rate(&self, pairs: f64, grains: u32, sum_of_squares: f64) -> f64 {
-        let thermal_square = sum_of_squares / (V::DIMENSION as f64 * f64::from(grains - 1));
+    fn expected_rate(&self, pairs: f64, grains: u32, speeds: RelativeSpeeds) -> f64 {
+        let grains = f64::from(grains);
+        let thermal_square = speeds.sum_over_pairs / (V::DIMENSION as f64 * grains * (grains - 1.0));
         pairs * self.rate_per_speed * thermal_square.sqrt()
     }
 }

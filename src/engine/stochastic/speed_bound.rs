@@ -8,8 +8,8 @@ pub(crate) struct RelativeSpeeds {
     /// No two grains are faster relative to each other than the square root of this [length²/time²]: the
     /// diagonal of the box in velocity space that holds them all.
     pub(crate) largest_square: f64,
-    /// Σ |v − v_c|², with the mean velocity v_c [length²/time²].
-    pub(crate) sum_of_squares: f64,
+    /// Σ (v_i − v_j)² over all pairs, N Σ |v − v_c|² with the mean velocity v_c [length²/time²].
+    pub(crate) sum_over_pairs: f64,
 }
 
 impl RelativeSpeeds {
@@ -21,15 +21,15 @@ impl RelativeSpeeds {
         let (mut sum, mut squares) = (V::ZERO, 0.0);
         for &velocity in &velocities[1..] {
             let relative = velocity - pivot;
-            lowest = lowest.lower(relative);
-            highest = highest.upper(relative);
+            lowest = relative.lower(lowest);
+            highest = relative.upper(highest);
             sum += relative;
             squares += relative.length_squared();
         }
-        let about_mean = squares - sum.length_squared() / velocities.len() as f64;
+        let over_pairs = velocities.len() as f64 * squares - sum.length_squared();
         RelativeSpeeds {
             largest_square: (highest - lowest).length_squared(),
-            sum_of_squares: if about_mean < 0.0 { 0.0 } else { about_mean },
+            sum_over_pairs: if over_pairs < 0.0 { 0.0 } else { over_pairs },
         }
     }
 }
