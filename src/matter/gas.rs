@@ -170,16 +170,20 @@ impl<V: Vector> Gas<V> {
     /// Brings the own columns into the order of `space.cells`, through the spare ones.
     pub fn sort_through(&mut self, space: &mut SortSpace<V>) {
         space.sort.count(&space.cells[..self.columns.len()], self.grid.number_of_cells());
-        self.sort_counted(space);
+        self.sort_counted(space, |columns, row| (columns.positions[row], columns.velocities[row]));
     }
 
-    /// [`Gas::sort_through`] after an engine has counted `space.cells` with `space.sort`.
-    pub fn sort_counted(&mut self, space: &mut SortSpace<V>) {
+    /// [`Gas::sort_through`] after an engine has counted `space.cells` with `space.sort`; `moved` tells position
+    /// and velocity that the grain in a row of the columns gets on the way.
+    pub fn sort_counted(&mut self, space: &mut SortSpace<V>, moved: impl Fn(&Columns<V>, usize) -> (V, V) + Sync) {
         let kept = space.sort.accumulate(&mut self.offsets);
         space.spare.match_shape(&self.columns);
         space.spare.truncate(kept);
         let columns = &self.columns;
-        let grain = |row| (columns.positions[row], columns.velocities[row], columns.ids[row]);
+        let grain = |row| {
+            let (position, velocity) = moved(columns, row);
+            (position, velocity, columns.ids[row])
+        };
         space.sort.fill(&space.cells[..columns.len()], &mut space.spare, columns.labels(), grain);
         std::mem::swap(&mut self.columns, &mut space.spare);
     }

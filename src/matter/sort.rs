@@ -99,11 +99,27 @@ impl CountingSort {
         });
     }
 
+    /// Grains that go to `cell`.
+    pub fn total(&self, cell: u32) -> u32 {
+        self.cursors[cell as usize..].iter().step_by(self.number_of_cells).sum()
+    }
+
+    /// Cells that more than `capacity` grains go to, in rising order.
+    pub fn cells_above(&self, capacity: u32) -> Vec<u32> {
+        let groups = self.number_of_cells.div_ceil(GROUP);
+        let touched = |group: &usize| self.touched[*group..].iter().step_by(groups).any(|&touched| touched);
+        let cells = |group: usize| group * GROUP..((group + 1) * GROUP).min(self.number_of_cells);
+        let cells = (0..groups).filter(touched).flat_map(cells).map(|cell| cell as u32);
+        cells.filter(|&cell| self.total(cell) > capacity).collect()
+    }
+
     /// Counts a grain of `row` over from one cell to another.
     pub fn recount(&mut self, row: usize, from: u32, to: u32) {
         let part = self.parts.partition_point(|rows| rows.end <= row);
         let groups = self.number_of_cells.div_ceil(GROUP);
-        self.cursors[part * self.number_of_cells + from as usize] -= 1;
+        if from != REMOVED {
+            self.cursors[part * self.number_of_cells + from as usize] -= 1;
+        }
         let counts = &mut self.cursors[part * self.number_of_cells..][..self.number_of_cells];
         Counter { counts, touched: &mut self.touched[part * groups..][..groups] }.add(to);
     }
@@ -116,10 +132,12 @@ impl CountingSort {
         let mut place = 0;
         for group in 0..groups {
             let span = group * GROUP..((group + 1) * GROUP).min(cells);
-            if !self.touched[group..].iter().step_by(groups).any(|&touched| touched) {
+            let touched = self.touched[group..].iter().step_by(groups).any(|&touched| touched);
+            if !touched {
                 offsets[span].fill(place);
                 continue;
             }
+            self.touched[group..].iter_mut().step_by(groups).for_each(|touched| *touched = true);
             for cell in span {
                 offsets[cell] = place;
                 for cursor in self.cursors[cell..].iter_mut().step_by(cells) {
@@ -165,7 +183,8 @@ mod tests {
         pool.install(|| {
             let mut sort = CountingSort::default();
             let mut offsets = vec![0; number_of_cells + 1];
-            sort.count(&cells[cells.len() / 2..], number_of_cells);
+            let others: Vec<u32> = (0..cells.len() as u32).map(|row| row * 7 % 60).collect();
+            sort.count(&others, number_of_cells);
             sort.accumulate(&mut offsets);
             sort.count(cells, number_of_cells);
             let kept = sort.accumulate(&mut offsets);

@@ -5,36 +5,40 @@
 //! accepted ones are always a prefix of that ranking and only ever become fewer, so every
 //! order of work reaches the same set: the result depends on no order of cells or threads.
 
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::rules::Admission;
 use crate::matter::grid::Grid;
-use crate::matter::sort::REMOVED;
+use crate::matter::sort::{CountingSort, FEWEST_GRAINS, REMOVED};
 use crate::random::PhaseStreams;
 use crate::space::Vector;
 
-/// The moves of one step and the room they find. Memory is kept from step to step.
-#[derive(Debug, Default)]
-pub(crate) struct Moves {
-    /// `[cell]`: grains now, before the moves.
-    pub(crate) occupancy: Vec<AtomicU32>,
-    /// `[row]`: the cell each grain is in now.
-    pub(crate) sources: Vec<u32>,
-    /// `[cell]`: movers that leave.
-    departures: Vec<AtomicU32>,
-    /// `[cell]`: movers that come.
-    arrivals: Vec<AtomicU32>,
-    /// Cells that would overflow if nobody left them; a cell may stand here several times.
-    pub(crate) crowded: Vec<u32>,
-    /// Arrivals at cells that may become too full, by cell and rank.
-    bids: Vec<Bid>,
-    /// Rows whose move is rejected.
-    rejected: Vec<u32>,
+/// The moves of one step: from where, to where, and how many grains each cell will hold.
+pub(crate) struct Moves<'a, V: Vector> {
+    pub(crate) grid: &'a Grid<V>,
+    /// Grains that make a cell full.
+    pub(crate) capacity: u32,
+    /// `[row]`: positions before the move [length].
+    pub(crate) positions: &'a [V],
+    /// `[row]`.
+    pub(crate) ids: &'a [u32],
+    /// `[row]`: the cell each grain goes to.
+    pub(crate) targets: &'a mut [u32],
+    /// The grains counted by these cells; kept up to date.
+    pub(crate) counts: &'a mut CountingSort,
+    pub(crate) ranks: PhaseStreams,
 }
 
-/// A mover that wants to enter a contested cell.
+/// A grain whose move is rejected: it stays where it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Rejected {
+    pub(crate) row: u32,
+    /// The cell it wanted to enter.
+    pub(crate) wanted: u32,
+}
+
+/// A mover that wants to enter a contested cell; the lower rank has precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Bid {
     cell: u32,
@@ -43,170 +47,120 @@ struct Bid {
     row: u32,
 }
 
-impl Moves {
-    /// Begins a step: everybody is in the cell that `offsets` say, and nobody has moved.
-    pub(crate) fn begin(&mut self, offsets: &[u32], rows: usize) {
-        let cells = offsets.len() - 1;
-        self.occupancy.resize_with(cells, AtomicU32::default);
-        self.departures.resize_with(cells, AtomicU32::default);
-        self.arrivals.resize_with(cells, AtomicU32::default);
-        self.sources.resize(rows, 0);
-        self.occupancy
-            .par_iter_mut()
-            .zip(self.departures.par_iter_mut().zip(&mut self.arrivals))
-            .zip(offsets.par_windows(2))
-            .with_min_len(4096)
-            .for_each(|((occupancy, (departures, arrivals)), ends)| {
-                *occupancy.get_mut() = ends[1] - ends[0];
-                *departures.get_mut() = 0;
-                *arrivals.get_mut() = 0;
-            });
+impl<V: Vector> Moves<'_, V> {
+    /// The cell that the grain in `row` comes from.
+    fn source(&self, row: u32) -> u32 {
+        self.grid.cell_of(self.positions[row as usize])
     }
 
-    /// Notes that a grain wants to go from `source` to another cell, or out. Returns the grains that
-    /// the target would hold if nobody left it: the last arrival at a cell sees them all, so the
-    /// cells found crowded do not depend on the order of arrivals.
-    #[inline(always)]
-    pub(crate) fn announce(&self, source: u32, target: u32) -> u32 {
-        self.departures[source as usize].fetch_add(1, Relaxed);
-        if target == REMOVED {
-            return 0;
+    /// The thesis' rule: a cell is open to any number when below capacity before the moves.
+    pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
+        let mut occupancy = vec![0_u32; self.grid.number_of_cells()];
+        self.positions.iter().for_each(|&position| occupancy[self.grid.cell_of(position) as usize] += 1);
+        let mut rejected = Vec::new();
+        for row in 0..self.targets.len() as u32 {
+            let wanted = self.targets[row as usize];
+            let refused = wanted != REMOVED && occupancy[wanted as usize] >= self.capacity;
+            if refused && wanted != self.source(row) {
+                self.reject(row);
+                rejected.push(Rejected { row, wanted });
+            }
         }
-        let before = self.arrivals[target as usize].fetch_add(1, Relaxed);
-        self.occupancy[target as usize].load(Relaxed) + before + 1
+        rejected
     }
 
-    /// Decides which of the moves to `targets` `[row]` are rejected; their rows, in rising order.
-    pub(crate) fn reject(
-        &mut self,
-        rule: Admission,
-        capacity: u32,
-        targets: &[u32],
-        ids: &[u32],
-        ranks: PhaseStreams,
-    ) -> &[u32] {
-        self.rejected.clear();
-        match rule {
-            Admission::Strict => self.reject_surplus(capacity, targets, ids, ranks),
-            Admission::Thesis => self.reject_at_full_cells(capacity, targets),
-        }
-        &self.rejected
-    }
-
-    /// The thesis' rule: open to any number when below capacity before the moves.
-    fn reject_at_full_cells(&mut self, capacity: u32, targets: &[u32]) {
-        let (occupancy, sources) = (&self.occupancy, &self.sources);
-        let refused = |(row, &target): (usize, &u32)| {
-            (target != REMOVED
-                && target != sources[row]
-                && occupancy[target as usize].load(Relaxed) >= capacity)
-                .then_some(row as u32)
-        };
-        self.rejected.par_extend(targets.par_iter().enumerate().with_min_len(4096).filter_map(refused));
-    }
-
-    /// The strict rule: the least set of rejections that leaves no cell above its capacity.
-    fn reject_surplus(&mut self, capacity: u32, targets: &[u32], ids: &[u32], ranks: PhaseStreams) {
-        let mut queue = self.crowded.clone();
-        queue.retain(|&cell| self.after_moves(cell) > capacity);
-        if queue.is_empty() {
-            return;
-        }
-        self.collect_bids(capacity, targets, ids, ranks);
-        while let Some(cell) = queue.pop() {
-            let surplus = self.after_moves(cell).saturating_sub(capacity);
-            let accepted = self.count(&self.arrivals, cell);
-            let keep = accepted - surplus.min(accepted);
-            let first = self.bids.partition_point(|bid| bid.cell < cell);
-            for k in keep..accepted {
-                let bid = self.bids[first + k as usize];
-                self.rejected.push(bid.row);
-                let source = self.sources[bid.row as usize];
-                *self.departures[source as usize].get_mut() -= 1;
-                *self.arrivals[cell as usize].get_mut() -= 1;
-                if self.after_moves(source) > capacity && self.count(&self.arrivals, source) > 0 {
-                    queue.push(source);
+    /// The strict rule: the least set of rejections that leaves no cell above its capacity. In rising order of rows.
+    pub(crate) fn reject_surplus(&mut self) -> Vec<Rejected> {
+        let mut contests: BTreeMap<u32, Vec<Bid>> = BTreeMap::new();
+        let mut rejected = Vec::new();
+        let mut above = self.counts.cells_above(self.capacity);
+        while !above.is_empty() {
+            self.open_contests(&above, &mut contests);
+            let mut next = Vec::new();
+            while let Some(cell) = above.pop() {
+                while self.counts.total(cell) > self.capacity
+                    && let Some(loser) = contests.get_mut(&cell).and_then(Vec::pop)
+                {
+                    rejected.push(Rejected { row: loser.row, wanted: cell });
+                    let source = self.reject(loser.row);
+                    if self.counts.total(source) > self.capacity {
+                        let known = contests.contains_key(&source);
+                        if known { &mut above } else { &mut next }.push(source);
+                    }
                 }
             }
+            next.sort_unstable();
+            next.dedup();
+            above = next;
         }
-        self.rejected.par_sort_unstable();
+        rejected.sort_unstable();
+        rejected
     }
 
-    /// Ranks the arrivals at every cell that would overflow if nobody left it.
-    fn collect_bids(&mut self, capacity: u32, targets: &[u32], ids: &[u32], ranks: PhaseStreams) {
-        self.bids.clear();
-        let (occupancy, arrivals, sources) = (&self.occupancy, &self.arrivals, &self.sources);
-        let bid = |(row, &target): (usize, &u32)| {
-            if target == REMOVED || target == sources[row] {
-                return None;
-            }
-            let crowd = occupancy[target as usize].load(Relaxed) + arrivals[target as usize].load(Relaxed);
-            let id = ids[row];
-            (crowd > capacity).then(|| Bid {
-                cell: target,
-                rank: ranks.hash(u64::from(id)),
-                id,
-                row: row as u32,
-            })
+    /// Sends a grain back to where it came from; returns that cell.
+    fn reject(&mut self, row: u32) -> u32 {
+        let source = self.source(row);
+        self.send(row, source);
+        source
+    }
+
+    /// Sends a grain elsewhere.
+    pub(crate) fn send(&mut self, row: u32, target: u32) {
+        let before = std::mem::replace(&mut self.targets[row as usize], target);
+        self.counts.recount(row as usize, before, target);
+    }
+
+    /// Ranks the arrivals at `cells`, the best first.
+    fn open_contests(&self, cells: &[u32], contests: &mut BTreeMap<u32, Vec<Bid>>) {
+        let mut wanted = vec![0_u64; self.grid.number_of_cells().div_ceil(64)];
+        for &cell in cells {
+            wanted[cell as usize / 64] |= 1 << (cell % 64);
+            contests.entry(cell).or_default();
+        }
+        let bid = |(row, &cell): (usize, &u32)| {
+            let contested = cell != REMOVED && wanted[cell as usize / 64] >> (cell % 64) & 1 == 1;
+            (contested && cell != self.source(row as u32)).then(|| self.bid(row as u32, cell))
         };
-        self.bids.par_extend(targets.par_iter().enumerate().with_min_len(4096).filter_map(bid));
-        self.bids.par_sort_unstable();
+        let targets = &*self.targets;
+        let mut bids: Vec<Bid> = if targets.len() < FEWEST_GRAINS {
+            targets.iter().enumerate().filter_map(bid).collect()
+        } else {
+            targets.par_iter().enumerate().with_min_len(FEWEST_GRAINS).filter_map(bid).collect()
+        };
+        bids.sort_unstable();
+        for bids in bids.chunk_by(|a, b| a.cell == b.cell) {
+            contests.insert(bids[0].cell, bids.to_vec());
+        }
+    }
+
+    fn bid(&self, row: u32, cell: u32) -> Bid {
+        let id = self.ids[row as usize];
+        Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row }
     }
 
     /// Lets rejected diagonal movers take the part of their move along `axis`, where the
-    /// face neighbour has room; winners by the same ranking. Returns their rows, in rising order.
-    ///
-    /// `targets` still tell where rejected grains wanted to go; winners get the cell they enter
-    /// and are no longer among the rejected.
-    pub(crate) fn slide<V: Vector>(
-        &mut self,
-        axis: usize,
-        capacity: u32,
-        grid: &Grid<V>,
-        targets: &mut [u32],
-        ids: &[u32],
-        ranks: PhaseStreams,
-    ) -> Vec<u32> {
-        let mut bids: Vec<Bid> = self
-            .rejected
+    /// face neighbour has room; winners by the same ranking. Returns their rows, in rising order; they
+    /// are no longer among the rejected.
+    pub(crate) fn slide(&mut self, axis: usize, rejected: &mut Vec<Rejected>) -> Vec<u32> {
+        let mut bids: Vec<Bid> = rejected
             .iter()
-            .filter_map(|&row| {
-                let id = ids[row as usize];
-                let cell = face_cell(grid, axis, self.sources[row as usize], targets[row as usize])?;
-                Some(Bid { cell, rank: ranks.hash(u64::from(id)), id, row })
+            .filter_map(|&Rejected { row, wanted }| {
+                Some(self.bid(row, face_cell(self.grid, axis, self.source(row), wanted)?))
             })
             .collect();
         bids.sort_unstable();
         let mut winners = Vec::new();
         for contest in bids.chunk_by(|a, b| a.cell == b.cell) {
-            let room = capacity.saturating_sub(self.after_moves(contest[0].cell)) as usize;
-            winners.extend(contest.iter().take(room).copied());
+            let room = self.capacity.saturating_sub(self.counts.total(contest[0].cell)) as usize;
+            winners.extend_from_slice(&contest[..room.min(contest.len())]);
         }
         for winner in &winners {
-            let source = self.sources[winner.row as usize];
-            *self.departures[source as usize].get_mut() += 1;
-            *self.arrivals[winner.cell as usize].get_mut() += 1;
-            targets[winner.row as usize] = winner.cell;
+            self.send(winner.row, winner.cell);
         }
         let mut rows: Vec<u32> = winners.iter().map(|winner| winner.row).collect();
         rows.sort_unstable();
-        self.rejected.retain(|row| rows.binary_search(row).is_err());
+        rejected.retain(|rejected| rows.binary_search(&rejected.row).is_err());
         rows
-    }
-
-    /// Rows whose move is rejected for good.
-    pub(crate) fn rejected(&self) -> &[u32] {
-        &self.rejected
-    }
-
-    /// Grains in `cell` if all moves that are still accepted are made.
-    fn after_moves(&self, cell: u32) -> u32 {
-        self.count(&self.occupancy, cell) + self.count(&self.arrivals, cell)
-            - self.count(&self.departures, cell)
-    }
-
-    fn count(&self, counts: &[AtomicU32], cell: u32) -> u32 {
-        counts[cell as usize].load(Relaxed)
     }
 }
 
@@ -224,30 +178,33 @@ fn face_cell<V: Vector>(grid: &Grid<V>, axis: usize, source: u32, target: u32) -
 mod tests {
     use super::*;
     use crate::random::{Phase, Streams};
+    use glam::DVec2;
     use proptest::prelude::*;
 
     fn ranks() -> PhaseStreams {
         Streams::new(3).at(5, Phase::Admission)
     }
 
-    /// Grains sorted by source cell on a line of `cells`, and where they want to go.
-    fn moves(cells: usize, capacity: u32, sources: &[u32], targets: &[u32]) -> Moves {
-        let mut offsets = vec![0; cells + 1];
-        for &source in sources {
-            offsets[source as usize + 1] += 1;
-        }
-        for cell in 0..cells {
-            offsets[cell + 1] += offsets[cell];
-        }
-        let mut moves = Moves::default();
-        moves.begin(&offsets, sources.len());
-        moves.sources.copy_from_slice(sources);
-        for (&source, &target) in sources.iter().zip(targets) {
-            if source != target && moves.announce(source, target) > capacity {
-                moves.crowded.push(target);
-            }
-        }
-        moves
+    /// Rows that the strict rule rejects, of grains sorted by source cell on a line of `cells`, and how many
+    /// grains each cell holds in the end.
+    fn rejected(cells: u32, capacity: u32, sources: &[u32], targets: &[u32]) -> (Vec<u32>, Vec<u32>) {
+        let size = DVec2::new(f64::from(cells), 1.0);
+        let grid = Grid::new(DVec2::ZERO, size, &[cells, 1], &[false, false]);
+        let positions: Vec<DVec2> = sources.iter().map(|&cell| grid.centre(cell)).collect();
+        let ids: Vec<u32> = (0..sources.len() as u32).collect();
+        let (mut targets, mut counts) = (targets.to_vec(), CountingSort::default());
+        counts.count(&targets, cells as usize);
+        let mut moves = Moves {
+            grid: &grid,
+            capacity,
+            positions: &positions,
+            ids: &ids,
+            targets: &mut targets,
+            counts: &mut counts,
+            ranks: ranks(),
+        };
+        let rejected = moves.reject_surplus().iter().map(|rejected| rejected.row).collect();
+        (rejected, (0..cells).map(|cell| counts.total(cell)).collect())
     }
 
     /// The same fixed point by repeated sweeps over all cells, slowly.
@@ -282,21 +239,17 @@ mod tests {
         ) {
             plan.sort_by_key(|&(source, _)| source);
             let (sources, targets): (Vec<u32>, Vec<u32>) = plan.into_iter().unzip();
-            let ids: Vec<u32> = (0..sources.len() as u32).collect();
-            let mut moves = moves(12, capacity, &sources, &targets);
-            let rejected = moves.reject(Admission::Strict, capacity, &targets, &ids, ranks()).to_vec();
+            let (rejected, held) = rejected(12, capacity, &sources, &targets);
             prop_assert_eq!(&rejected, &by_sweeps(12, capacity, &sources, &targets));
             for cell in 0..12_u32 {
                 let before = sources.iter().filter(|&&s| s == cell).count() as u32;
-                prop_assert!(moves.after_moves(cell) <= capacity.max(before));
+                prop_assert!(held[cell as usize] <= capacity.max(before));
             }
         }
     }
 
     #[test]
     fn a_swap_between_full_cells_is_admitted() {
-        let (sources, targets) = ([0, 0, 1, 1], [1, 0, 0, 1]);
-        let mut moves = moves(2, 2, &sources, &targets);
-        assert!(moves.reject(Admission::Strict, 2, &targets, &[0, 1, 2, 3], ranks()).is_empty());
+        assert!(rejected(2, 2, &[0, 0, 1, 1], &[1, 0, 0, 1]).0.is_empty());
     }
 }

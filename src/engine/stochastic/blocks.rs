@@ -92,6 +92,16 @@ pub(crate) fn cut<'a, V: Vector>(
 }
 
 impl<V: Vector> Block<'_, V> {
+    /// The place of the block that holds `cell` among all blocks of a fixed number of cells.
+    pub(crate) fn number_of(cell: u32) -> usize {
+        cell as usize / CELLS_PER_BLOCK
+    }
+
+    /// The first cell of a block.
+    pub(crate) fn first_cell(number: usize) -> u32 {
+        (number * CELLS_PER_BLOCK) as u32
+    }
+
     /// All its rows.
     fn rows(&self) -> Range<usize> {
         self.first_row..self.first_row + self.ids.len()

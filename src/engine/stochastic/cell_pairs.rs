@@ -35,10 +35,14 @@ pub(crate) struct PairCollisions<'a, V: Vector, R> {
 /// the second goes the opposite way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Displaced<V> {
-    /// Rows of the partners, counted from the start of their block.
+    /// Their cell.
+    pub(crate) cell: u32,
+    /// Rows of the partners, counted from the start of the block.
     pub(crate) pair: (usize, usize),
     /// Displacement of the first partner [length].
     pub(crate) shift: V,
+    /// Momentum times the way that the displacement carries [mass·length²/time].
+    pub(crate) carried: f64,
 }
 
 /// What the cells of a block have drawn.
@@ -62,6 +66,7 @@ struct Candidate {
 /// A cell that has drawn candidates.
 #[derive(Clone, Debug)]
 struct Drawn {
+    number: u32,
     /// Bound on the squared relative speeds, before any collision [length²/time²].
     bound: f64,
     /// What the cell draws from here on.
@@ -110,7 +115,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
                 times += drawn.excess(square);
             }
             for _ in 0..times {
-                self.collide_pair(pair, block, &mut drawn.random, tally, &mut displace);
+                self.collide_pair(drawn, pair, block, tally, &mut displace);
             }
         }
     }
@@ -119,23 +124,24 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
     #[inline(always)]
     fn collide_pair(
         &self,
+        cell: &mut Drawn,
         pair: (usize, usize),
         block: &mut Block<'_, V>,
-        random: &mut Stream,
         tally: &mut Tally<V>,
         displace: &mut impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
         let relative = block.velocities[pair.0] - block.velocities[pair.1];
-        let elastic = V::exchange(relative, random);
+        let elastic = V::exchange(relative, &mut cell.random);
         let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
         block.velocities[pair.0] += change;
         block.velocities[pair.1] -= change;
         tally.counts.collisions += 1;
         let after = relative + change * 2.0;
-        if let Some(shift) = self.displacement.shift(change, after)
-            && displace(Displaced { pair, shift }, block.positions)
-        {
-            tally.counts.carried_momentum += self.mass * after.dot(shift);
+        if let Some(shift) = self.displacement.shift(change, after) {
+            let carried = self.mass * after.dot(shift);
+            if displace(Displaced { cell: cell.number, pair, shift, carried }, block.positions) {
+                tally.counts.carried_momentum += carried;
+            }
         }
     }
 
@@ -156,7 +162,12 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
             let pairs = self.enskog.of(cell, rows.len()) * f64::from(grains) * f64::from(grains - 1);
             tally.collision_rate += self.expected_rate(pairs, grains, speeds);
             let expected = pairs * self.candidates_per_speed * speeds.largest_square.sqrt();
-            draws.add(rows, speeds.largest_square, expected, self.streams.stream(u64::from(cell)));
+            let drawn = Drawn {
+                number: cell,
+                bound: speeds.largest_square,
+                random: self.streams.stream(u64::from(cell)),
+            };
+            draws.add(rows, drawn, expected);
         }
         draws
     }
@@ -183,15 +194,15 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
 impl Draws {
     /// Draws the candidates of one more cell, `expected` of them on the average.
     #[inline(always)]
-    fn add(&mut self, rows: Range<usize>, bound: f64, expected: f64, mut random: Stream) {
+    fn add(&mut self, rows: Range<usize>, mut drawn: Drawn, expected: f64) {
         let cell = self.cells.len() as u32;
         let (first_row, grains) = (rows.start as u32, rows.len() as u32);
-        for _ in 0..random.round(expected) {
-            let ((first, second), z) = random.pair_and_uniform(grains);
+        for _ in 0..drawn.random.round(expected) {
+            let ((first, second), z) = drawn.random.pair_and_uniform(grains);
             let pair = (first_row + first as u32, first_row + second as u32);
-            self.candidates.push(Candidate { pair, cell, threshold: z * z * bound });
+            self.candidates.push(Candidate { pair, cell, threshold: z * z * drawn.bound });
         }
-        self.cells.push(Drawn { bound, random });
+        self.cells.push(drawn);
     }
 }
 

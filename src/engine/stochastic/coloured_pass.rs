@@ -1,6 +1,6 @@
-//! Pair collisions of HSMC, with displacements that respect the room in the cells around.
+//! Displacements of HSMC whose cells compete for room.
 //!
-//! Whether a displacement is possible depends on counts that change with every displacement. To
+//! Whether such a displacement is possible depends on counts that change with every displacement. To
 //! make the result independent of threads, cells are grouped into blocks of two or three
 //! along each axis, blocks into 2ᴰ colours. Colours come one after another; blocks of one colour
 //! touch disjoint cells, because no grain gets further than the cells beside its block.
@@ -9,128 +9,113 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::blocks::{Block, cut};
-use super::cell_pairs::{Displaced, PairCollisions};
-use super::laws::Room;
+use super::cell_pairs::Displaced;
 use super::parallel;
 use super::rules::DisplacementRule;
-use super::tally::Tally;
-use crate::law::restitution::Restitution;
+use super::wishes::{Places, Wish};
 use crate::matter::columns::Columns;
 use crate::matter::grid::Grid;
 use crate::random::PhaseStreams;
 use crate::space::Vector;
 
+/// A cell that waits for its turn, and what its collisions wish.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contested<'a, V> {
+    pub(crate) cell: u32,
+    /// The row from which the rows of the wishes count.
+    pub(crate) first_row: usize,
+    pub(crate) wishes: &'a [Wish<V>],
+}
+
 /// The parts of the pass.
-pub(crate) struct ColouredPass<'a, V: Vector, R: Restitution> {
-    pub(crate) grid: &'a Grid<V>,
-    pub(crate) offsets: &'a [u32],
-    pub(crate) collisions: PairCollisions<'a, V, R>,
-    pub(crate) room: Room<V>,
-    pub(crate) capacity: u32,
-    pub(crate) rule: DisplacementRule,
+pub(crate) struct ColouredPass<'a, V: Vector> {
+    pub(crate) places: Places<'a, V>,
     /// `[cell]`: grains now.
     pub(crate) occupancy: &'a [AtomicU32],
 }
 
-impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
-    /// Collides all pairs; `cells` `[row]` receives the cell each grain is in afterwards.
-    pub(crate) fn run(&self, columns: &mut Columns<V>, cells: &mut [u32], order: PhaseStreams) -> Tally<V> {
-        let axes: Vec<Vec<Range<u32>>> = (0..3).map(|axis| spans(self.grid, axis)).collect();
-        let slabs = &axes[V::DIMENSION - 1];
-        let stride = self.grid.stride(V::DIMENSION - 1);
+impl<V: Vector> ColouredPass<'_, V> {
+    /// Grants what can be granted of the wishes of `cells`, which are in rising order. `scratch` `[row]` is overwritten.
+    /// Returns the momentum that the displacements carry, times the way.
+    pub(crate) fn run(
+        &self,
+        cells: &[Contested<'_, V>],
+        columns: &mut Columns<V>,
+        scratch: &mut [u32],
+        order: PhaseStreams,
+    ) -> f64 {
+        let last = V::DIMENSION - 1;
+        let colours: Vec<Vec<u32>> = (0..3).map(|axis| parities(self.places.grid, axis)).collect();
+        let stride = self.places.grid.stride(last);
+        let slabs = spans(self.places.grid, last);
         let cells_of_slabs = slabs.iter().map(|slab| slab.start * stride..slab.end * stride);
         let grains = columns.len();
-        let mut blocks = cut(cells_of_slabs, self.offsets, columns, cells);
-        let mut total = Tally::default();
+        let mut slabs = cut(cells_of_slabs, self.places.offsets, columns, scratch);
+        let mut rest = cells;
+        let mut work: Vec<_> = slabs
+            .iter_mut()
+            .map(|slab| {
+                let cells;
+                (cells, rest) = rest.split_at(rest.partition_point(|contested| contested.cell < slab.cells.end));
+                (slab, cells)
+            })
+            .collect();
+        let mut carried = 0.0;
         for colour in colours_in_order(V::DIMENSION, order) {
-            let slab_parity = (colour >> (V::DIMENSION - 1)) as usize & 1;
-            let slabs = blocks.iter_mut().enumerate();
-            let slabs = slabs.filter(|(slab, block)| slab % 2 == slab_parity && !block.ids.is_empty());
-            let tallies =
-                parallel::map(grains, slabs.collect(), |(slab, block)| self.slab(&axes, slab, colour, block));
-            total.add(&Tally::total(tallies));
+            let parity = (colour >> last) as usize & 1;
+            let turns = work.iter_mut().enumerate().filter(|(slab, (_, cells))| slab % 2 == parity && !cells.is_empty());
+            let sums = parallel::map(grains, turns.collect(), |(_, (slab, cells))| {
+                self.slab(colour, &colours, slab, cells)
+            });
+            carried += sums.into_iter().sum::<f64>();
         }
-        total
+        carried
     }
 
-    /// All blocks of one colour in a slab: their cells in the order of their numbers.
-    fn slab(&self, axes: &[Vec<Range<u32>>], slab: usize, colour: u32, block: &mut Block<'_, V>) -> Tally<V> {
-        let mut tally = Tally::default();
-        let ranges = |axis: usize| {
-            let wanted = if axis == V::DIMENSION - 1 { slab } else { usize::MAX };
-            let parity = (colour >> axis) as usize & 1;
-            axes[axis]
-                .iter()
-                .enumerate()
-                .filter(move |&(k, _)| if wanted == usize::MAX { k % 2 == parity } else { k == wanted })
-                .map(|(_, range)| range.clone())
-        };
-        for outer in ranges(2) {
-            for middle in ranges(1) {
-                let occupied = self.occupied(&middle, &outer);
-                for inner in
-                    ranges(0).filter(|inner| inner.start < occupied.end && inner.end > occupied.start)
-                {
-                    self.cells([inner, middle.clone(), outer.clone()], block, &mut tally);
-                }
+    /// The cells of one colour in a slab, in the order of their numbers.
+    fn slab(&self, colour: u32, parities: &[Vec<u32>], slab: &mut Block<'_, V>, cells: &[Contested<'_, V>]) -> f64 {
+        let mut carried = 0.0;
+        for contested in cells {
+            let home = self.places.grid.coordinates(contested.cell);
+            let own = (0..V::DIMENSION).map(|axis| parities[axis][home[axis] as usize] << axis).sum::<u32>();
+            if own == colour {
+                carried += self.cell(home, contested, slab);
             }
         }
-        tally
+        carried
     }
 
-    /// The stretch along the first axis that holds all grains of the given rows of cells.
-    fn occupied(&self, middle: &Range<u32>, outer: &Range<u32>) -> Range<u32> {
-        let length = self.grid.cells()[0];
-        let mut stretch = length..0;
-        for k in outer.clone() {
-            for j in middle.clone() {
-                let row = self.grid.cell_at([0, j, k]) as usize;
-                let offsets = &self.offsets[row..=row + length as usize];
-                let (begin, end) = (offsets[0], offsets[length as usize]);
-                if begin < end {
-                    let first = offsets.partition_point(|&offset| offset <= begin) as u32 - 1;
-                    let last = offsets.partition_point(|&offset| offset < end) as u32;
-                    stretch = stretch.start.min(first)..stretch.end.max(last);
-                }
+    fn cell(&self, home: [u32; 3], contested: &Contested<'_, V>, slab: &mut Block<'_, V>) -> f64 {
+        let cell = contested.cell;
+        let rows = slab.rows_of(cell, self.places.offsets);
+        let start = slab.first_row + rows.start - contested.first_row;
+        let positions = &mut slab.positions[rows.clone()];
+        let cells = &mut slab.targets[rows];
+        cells.fill(cell);
+        let mut carried = 0.0;
+        for wish in contested.wishes {
+            let Displaced { pair: (i, j), shift, carried: momentum, .. } = wish.displaced;
+            let full = self.occupancy[cell as usize].load(Relaxed) >= self.places.capacity;
+            if !full && self.displace(home, (i - start, j - start), shift, positions, cells) {
+                carried += momentum;
             }
         }
-        stretch
-    }
-
-    fn cells(&self, [inner, middle, outer]: [Range<u32>; 3], block: &mut Block<'_, V>, tally: &mut Tally<V>) {
-        for k in outer {
-            for j in middle.clone() {
-                for i in inner.clone() {
-                    self.cell([i, j, k], block, tally);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn cell(&self, home: [u32; 3], block: &mut Block<'_, V>, tally: &mut Tally<V>) {
-        let cell = self.grid.cell_at(home);
-        let rows = block.rows_of(cell, self.offsets);
-        block.targets[rows.clone()].fill(cell);
-        if rows.len() < 2 {
-            return;
-        }
-        let _ = tally; todo!()
+        carried
     }
 
     /// Displaces both partners or none.
     fn displace(
         &self,
         home: [u32; 3],
-        displaced: Displaced<V>,
+        (i, j): (usize, usize),
+        shift: V,
         positions: &mut [V],
         cells: &mut [u32],
     ) -> bool {
-        let (i, j) = displaced.pair;
-        let first = self.place(home, positions[i] + displaced.shift);
-        let second = self.place(home, positions[j] - displaced.shift);
+        let first = self.places.place(home, positions[i] + shift);
+        let second = self.places.place(home, positions[j] - shift);
         let (Some((first, cell_i)), Some((second, cell_j))) = (first, second) else { return false };
-        if self.rule == DisplacementRule::Paired {
+        if self.places.rule == DisplacementRule::Paired {
             let (enters_i, enters_j) = (cell_i != cells[i], cell_j != cells[j]);
             let together = u32::from(enters_i && enters_j && cell_i == cell_j);
             if (enters_i && !self.has_room(cell_i, 1 + together)) || (enters_j && !self.has_room(cell_j, 1)) {
@@ -143,26 +128,8 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
         true
     }
 
-    /// A displaced position and its cell; `None` behind a wall or beyond the cells beside `home`.
-    #[inline]
-    fn place(&self, home: [u32; 3], mut position: V) -> Option<(V, u32)> {
-        if !self.room.holds(position) {
-            return None;
-        }
-        let mut there = [0; 3];
-        for axis in 0..V::DIMENSION {
-            self.grid.wrap(&mut position, axis);
-            there[axis] = self.grid.coordinate_of(position, axis);
-            let distance = there[axis].abs_diff(home[axis]);
-            if distance > 1 && !(self.grid.is_periodic(axis) && distance == self.grid.cells()[axis] - 1) {
-                return None;
-            }
-        }
-        Some((position, self.grid.cell_at(there)))
-    }
-
     fn has_room(&self, cell: u32, newcomers: u32) -> bool {
-        self.occupancy[cell as usize].load(Relaxed) + newcomers <= self.capacity
+        self.occupancy[cell as usize].load(Relaxed) + newcomers <= self.places.capacity
     }
 
     /// Counts a grain over from its cell to `target`. Nobody else touches these counts now.
@@ -175,6 +142,12 @@ impl<V: Vector, R: Restitution> ColouredPass<'_, V, R> {
             *cell = target;
         }
     }
+}
+
+/// `[coordinate]`: whether the span of a coordinate is an even or an odd one.
+fn parities<V: Vector>(grid: &Grid<V>, axis: usize) -> Vec<u32> {
+    let spans = spans(grid, axis).into_iter().enumerate();
+    spans.flat_map(|(k, span)| span.map(move |_| k as u32 & 1)).collect()
 }
 
 /// Cuts an axis into spans of two or three cells; an even number of them where it is periodic, whose

@@ -1,21 +1,26 @@
 //! What HSMC adds to CBA: an excluded volume on the level of cells.
 
+use std::sync::atomic::AtomicU32;
+
 use super::Step;
-use super::admission::Moves;
-use super::blocks::Block;
+use super::admission::{Moves, Rejected};
+use super::blocks::{Block, Part, parts, rows_of};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
 use super::cell_pairs::PairCollisions;
-use super::coloured_pass::ColouredPass;
-use super::enskog::EnskogFactors;
+use super::coloured_pass::{ColouredPass, Contested};
 use super::flight::Flights;
+use super::held::Held;
 use super::laws::{Laws, Room};
 use super::parallel;
 use super::rules::{Admission, HsmcRules};
-use super::tally::Tally;
+use super::tally::{Speeds, Tally};
+use super::wishes::{Draft, Places, Wish, Wishes};
+use crate::engine::report::Counts;
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
 use crate::matter::gas::{Gas, SortSpace};
-use crate::matter::sort::REMOVED;
+use crate::matter::grid::Grid;
+use crate::matter::sort::{Counter, REMOVED};
 use crate::random::Phase;
 use crate::space::Vector;
 
@@ -24,12 +29,32 @@ use crate::space::Vector;
 pub(crate) struct ExcludedVolume<V: Vector> {
     rules: HsmcRules,
     cell_collisions: CellCollisions<V>,
-    moves: Moves,
+    /// `[block]`: displacements that the collisions of the step ask for.
+    wishes: Vec<Vec<Wish<V>>>,
+    /// Whether they have been granted already, as far as there was room.
+    granted: bool,
+    /// `[cell]`: grains that would enter if every wish came true.
+    visitors: Vec<AtomicU32>,
+    /// `[cell]`: grains now; kept only where cells get crowded.
+    occupancy: Vec<AtomicU32>,
+    /// Grains whose move is rejected.
+    held: Held,
 }
+
+/// The blocks that one thread takes, each with its wishes.
+type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Wish<V>>)>;
 
 impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
-        ExcludedVolume { rules, cell_collisions: CellCollisions::default(), moves: Moves::default() }
+        ExcludedVolume {
+            rules,
+            cell_collisions: CellCollisions::default(),
+            wishes: Vec::new(),
+            granted: false,
+            visitors: Vec::new(),
+            occupancy: Vec::new(),
+            held: Held::default(),
+        }
     }
 
     /// Grains that make a cell of `gas` full.
@@ -54,31 +79,96 @@ impl<V: Vector> ExcludedVolume<V> {
         self.cell_collisions.sweep(rules, gas, laws.streams, step.number, &mut tally.counts);
     }
 
-    /// Pairs collide inside cells and are displaced where there is room.
+    /// Pairs collide inside cells. Their displacements are granted at once where cells are crowded, and with the
+    /// move where none is.
     pub(crate) fn collide_pairs<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
         gas: &mut Gas<V>,
+        space: &mut SortSpace<V>,
         step: Step,
         tally: &mut Tally<V>,
     ) {
         let capacity = self.capacity(gas);
         let (grid, offsets, columns) = gas.parts_mut();
-        self.moves.begin(offsets, columns.len());
-        let pass = ColouredPass {
-            grid,
-            offsets,
-            collisions: PairCollisions::new(laws, grid, offsets, step),
-            room: Room::at(grid, &laws.boundary, step.start),
-            capacity,
-            rule: self.rules.displacement,
-            occupancy: &self.moves.occupancy,
+        start_counts(&mut self.visitors, (1..offsets.len()).map(|_| 0));
+        let wishes = Wishes {
+            places: self.places(laws, grid, offsets, capacity, step),
+            visitors: &self.visitors,
         };
-        let order = laws.streams.at(step.number, Phase::Colours);
-        tally.add(&pass.run(columns, &mut self.moves.sources, order));
+        let collisions = PairCollisions::new(laws, grid, offsets, step);
+        let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
+        let tallies = parallel::each(parts.into_iter(), |part| {
+            let mut draft = Draft::default();
+            let blocks = part.into_iter().map(|(mut block, list)| {
+                list.clear();
+                draft.begin(&block, offsets);
+                let (mut tally, mut crowded) = (Tally::default(), false);
+                collisions.collide(&mut block, offsets, &mut tally, |displaced, _| {
+                    crowded |= wishes.record(displaced, &mut draft, list);
+                    false
+                });
+                (tally, crowded)
+            });
+            blocks.collect::<Vec<_>>()
+        });
+        self.granted = false;
+        for (block, crowded) in tallies.into_iter().flatten() {
+            tally.add(&block);
+            self.granted |= crowded;
+        }
+        if self.granted {
+            self.grant(laws, gas, space, step, tally);
+        }
     }
 
-    /// Every grain announces where it would go: into the spare columns, nothing is decided yet.
+    fn places<'a, R: Restitution>(
+        &self,
+        laws: &Laws<V, R>,
+        grid: &'a Grid<V>,
+        offsets: &'a [u32],
+        capacity: u32,
+        step: Step,
+    ) -> Places<'a, V> {
+        let room = Room::at(grid, &laws.boundary, step.start);
+        Places { grid, offsets, room, capacity, rule: self.rules.displacement }
+    }
+
+    /// Grants wishes: those of calm cells first, then the others, colour by colour.
+    fn grant<R: Restitution>(
+        &mut self,
+        laws: &Laws<V, R>,
+        gas: &mut Gas<V>,
+        space: &mut SortSpace<V>,
+        step: Step,
+        tally: &mut Tally<V>,
+    ) {
+        let capacity = self.capacity(gas);
+        let (grid, offsets, columns) = gas.parts_mut();
+        start_counts(&mut self.occupancy, offsets.windows(2).map(|ends| ends[1] - ends[0]));
+        let places = self.places(laws, grid, offsets, capacity, step);
+        let wishes = Wishes { places, visitors: &self.visitors };
+        let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
+        let occupancy = &self.occupancy;
+        let results = parallel::each(parts.into_iter(), |part| {
+            let (mut draft, mut contested) = (Draft::default(), Vec::new());
+            let tallies = part.into_iter().map(|(mut block, list)| {
+                wishes.grant_calm(list, &mut block, &mut draft, occupancy, &mut contested)
+            });
+            let tallies: Vec<_> = tallies.collect();
+            (tallies, contested)
+        });
+        let mut contested = Vec::new();
+        for (tallies, cells) in results {
+            tallies.iter().for_each(|block| tally.add(block));
+            contested.extend(cells.into_iter().map(|cell| contest(cell, &self.wishes, offsets)));
+        }
+        let order = laws.streams.at(step.number, Phase::Colours);
+        let pass = ColouredPass { places, occupancy };
+        tally.counts.carried_momentum += pass.run(&contested, columns, &mut space.cells, order);
+    }
+
+    /// Every grain says where it would go; nothing is decided yet.
     pub(crate) fn advect<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
@@ -88,14 +178,28 @@ impl<V: Vector> ExcludedVolume<V> {
         tally: &mut Tally<V>,
     ) {
         let capacity = self.capacity(gas);
-        let mut crowds = std::mem::take(&mut self.moves.crowded);
-        crowds.clear();
         let (grid, offsets, columns) = gas.parts_mut();
-        space.spare.take_labels(columns);
+        let wishes = Wishes {
+            places: self.places(laws, grid, offsets, capacity, step),
+            visitors: &self.visitors,
+        };
         let flights = Flights::new(laws, grid, step);
-        let (moves, columns) = (&self.moves, &*columns);
-let _=flights; let _= moves; let _ = columns;
-        self.moves.crowded = crowds;
+        let parts = parts(offsets, columns, &mut space.cells);
+        let counters = space.sort.begin(rows_of(&parts), grid.number_of_cells());
+        let parts = with_wishes(parts, &mut self.wishes, grid);
+        let granted = self.granted;
+        let tallies = parallel::each(parts.into_iter().zip(counters), |(part, mut counter)| {
+            let blocks = part.into_iter().map(|(mut block, list)| {
+                let mut tally = Tally::default();
+                if !granted {
+                    wishes.grant_all(list, &mut block, &mut tally);
+                }
+                announce(&flights, &mut block, &mut counter, &mut tally);
+                tally
+            });
+            blocks.collect::<Vec<_>>()
+        });
+        tallies.iter().flatten().for_each(|block| tally.add(block));
     }
 
     /// Rejects moves into cells without room. A rejected grain keeps position and velocity, and
@@ -109,83 +213,140 @@ let _=flights; let _= moves; let _ = columns;
         step: Step,
         tally: &mut Tally<V>,
     ) {
-        let capacity = self.capacity(gas);
-        let ranks = laws.streams.at(step.number, Phase::Admission);
-        let (grid, _, columns) = gas.parts_mut();
-        let SortSpace { spare, cells, .. } = space;
-        let flights = Flights::new(laws, grid, step);
-        let rejected = self.moves.reject(self.rules.admission, capacity, cells, &spare.ids, ranks);
+        let flights = Flights::new(laws, gas.grid(), step);
+        let columns = gas.columns();
+        let mut moves = Moves {
+            grid: gas.grid(),
+            capacity: self.capacity(gas),
+            positions: &columns.positions,
+            ids: &columns.ids,
+            targets: &mut space.cells,
+            counts: &mut space.sort,
+            ranks: laws.streams.at(step.number, Phase::Admission),
+        };
+        self.held.clear(columns.len());
+        let mut rejected = match self.rules.admission {
+            Admission::Strict => moves.reject_surplus(),
+            Admission::Thesis => moves.reject_at_full_cells(),
+        };
         tally.counts.rejected_moves += rejected.len() as u64;
-        for &row in rejected {
-            take_back_wall_momentum(&flights, columns, spare.ids[row as usize], row as usize, tally);
-        }
+        rejected.iter().for_each(|&Rejected { row, .. }| take_back_wall_momentum(&flights, columns, row, tally));
         if self.rules.admission == Admission::Strict {
             for axis in axes_with_gravity_last(laws.gravity) {
-                for row in self.moves.slide(axis, capacity, grid, cells, &spare.ids, ranks) {
-                    let row = row as usize;
-                    let along = spare.positions[row][axis];
-                    spare.positions[row] = columns.positions[row];
-                    spare.positions[row][axis] = along;
-                    spare.velocities[row] = columns.velocities[row];
-                    if flights.is_out(spare.positions[row]) {
-                        cells[row] = REMOVED;
-                        tally.counts.removed += 1;
-                    }
+                for row in moves.slide(axis, &mut rejected) {
+                    self.held.slide(row, axis);
                 }
             }
         }
-        for &row in self.moves.rejected() {
-            let row = row as usize;
-            cells[row] = self.moves.sources[row];
-            spare.positions[row] = columns.positions[row];
-            spare.velocities[row] = columns.velocities[row];
-            if flights.is_out(spare.positions[row]) {
-                cells[row] = REMOVED;
+        rejected.iter().for_each(|rejected| self.held.hold(rejected.row));
+        for row in self.held.rows() {
+            let (position, _) = self.held.flight(&flights, columns, row as usize);
+            if flights.is_out(position) {
+                moves.send(row, REMOVED);
                 tally.counts.removed += 1;
             }
         }
     }
+
+    /// Moves all grains to where they may go, into cell order.
+    pub(crate) fn sort<R: Restitution>(
+        &self,
+        laws: &Laws<V, R>,
+        gas: &mut Gas<V>,
+        space: &mut SortSpace<V>,
+        step: Step,
+    ) {
+        let grid = gas.grid().clone();
+        let flights = Flights::new(laws, &grid, step);
+        gas.sort_counted(space, |columns, row| self.held.flight(&flights, columns, row));
+    }
 }
 
-/// Flies the grains of a block from the columns to the spare ones and announces who changes cells.
-/// Also returns the cells that were found crowded.
-fn fly_block<V: Vector, R: Restitution>(
+/// Where the grains of a block want to go.
+fn announce<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
-    moves: &Moves,
-    columns: &Columns<V>,
-    capacity: u32,
-    block: Block<'_, V>,
-) -> (Tally<V>, Vec<u32>) {
-    let mut tally = Tally::default();
-    let mut crowded = Vec::new();
-    for k in 0..block.ids.len() {
-        let row = block.first_row + k;
-        let (position, velocity) = (columns.positions[row], columns.velocities[row]);
-        let flight = flights.fly(position, velocity, block.ids[k], &mut tally.counts.wall_momentum);
-        tally.speeds.note(flight.velocity);
-        block.positions[k] = flight.position;
-        block.velocities[k] = flight.velocity;
-        let target = if flight.left { REMOVED } else { flights.cell_of(flight.position) };
-        tally.counts.removed += u64::from(flight.left);
-        block.targets[k] = target;
-        let source = moves.sources[row];
-        if target != source && moves.announce(source, target) > capacity {
-            crowded.push(target);
-        }
+    block: &mut Block<'_, V>,
+    counter: &mut Counter<'_>,
+    tally: &mut Tally<V>,
+) {
+    let mut speeds = Speeds::default();
+    for row in 0..block.ids.len() {
+        let (there, gained) = flights.free(block.positions[row], block.velocities[row]);
+        let target = if flights.is_free(there) {
+            speeds.note(gained);
+            flights.cell_inside(there)
+        } else {
+            meet_the_edge(flights, block, row, &mut speeds, &mut tally.counts)
+        };
+        block.targets[row] = target;
+        counter.add(target);
     }
-    (tally, crowded)
+    tally.speeds.add(&speeds);
+}
+
+/// Where a grain gets that comes near an edge.
+#[cold]
+#[inline(never)]
+fn meet_the_edge<V: Vector, R: Restitution>(
+    flights: &Flights<'_, V, R>,
+    block: &Block<'_, V>,
+    row: usize,
+    speeds: &mut Speeds<V>,
+    counts: &mut Counts<V>,
+) -> u32 {
+    let (position, velocity) = (block.positions[row], block.velocities[row]);
+    let flight = flights.fly_to_the_edge(position, velocity, block.ids[row], &mut counts.wall_momentum);
+    speeds.note(flight.velocity);
+    if flight.left {
+        counts.removed += 1;
+        return REMOVED;
+    }
+    flights.cell_of(flight.position)
+}
+
+/// Gives every block the wishes of its place.
+fn with_wishes<'a, V: Vector>(
+    parts: Vec<Part<'a, V>>,
+    wishes: &'a mut Vec<Vec<Wish<V>>>,
+    grid: &Grid<V>,
+) -> Vec<WishingPart<'a, V>> {
+    wishes.resize_with(Block::<V>::number_of(grid.number_of_cells() as u32 - 1) + 1, Vec::new);
+    let mut lists = wishes.iter_mut().enumerate();
+    let mut list = |block: &Block<'_, V>| {
+        let number = Block::<V>::number_of(block.cells.start);
+        lists.find(|(place, _)| *place == number).expect("every block has a list, in order").1
+    };
+    let parts = parts.into_iter().map(|part| {
+        part.blocks.into_iter().map(|block| (list(&block), block)).map(|(list, block)| (block, list)).collect()
+    });
+    parts.collect()
+}
+
+/// The wishes of a cell.
+fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Wish<V>>], offsets: &[u32]) -> Contested<'a, V> {
+    let number = Block::<V>::number_of(cell);
+    let first_cell = Block::<V>::first_cell(number);
+    let list = &wishes[number];
+    let first = list.partition_point(|wish| wish.displaced.cell < cell);
+    let last = list.partition_point(|wish| wish.displaced.cell <= cell);
+    Contested { cell, first_row: offsets[first_cell as usize] as usize, wishes: &list[first..last] }
+}
+
+/// Sets the counts of all cells.
+fn start_counts(counts: &mut Vec<AtomicU32>, values: impl Iterator<Item = u32>) {
+    counts.clear();
+    counts.extend(values.map(AtomicU32::new));
 }
 
 /// A rejected move has not met the walls it would have met.
 fn take_back_wall_momentum<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
     columns: &Columns<V>,
-    id: u32,
-    row: usize,
+    row: u32,
     tally: &mut Tally<V>,
 ) {
-    let mut momentum = Default::default();
-    flights.fly(columns.positions[row], columns.velocities[row], id, &mut momentum);
+    let (row, mut momentum) = (row as usize, Default::default());
+    flights.fly(columns.positions[row], columns.velocities[row], columns.ids[row], &mut momentum);
     for (axis, sides) in momentum.iter().enumerate() {
         for (side, &given) in sides.iter().enumerate() {
             tally.counts.wall_momentum[axis][side] -= given;

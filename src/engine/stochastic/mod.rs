@@ -13,12 +13,14 @@ mod enskog;
 mod excluded_volume;
 mod flight;
 mod gas_pass;
+mod held;
 pub mod laws;
 mod parallel;
 pub mod rules;
 mod speed_bound;
 mod tally;
 mod time_step;
+mod wishes;
 
 use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
@@ -66,7 +68,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("pair collisions and move");
         let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step);
         laps.start("sort");
-        gas.sort_counted(&mut self.space);
+        gas.sort_counted(&mut self.space, |columns, row| (columns.positions[row], columns.velocities[row]));
         tally
     }
 
@@ -77,13 +79,13 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("cell collisions");
         volume.collide_cells(&self.laws, gas, step, &mut tally);
         laps.start("pair collisions");
-        volume.collide_pairs(&self.laws, gas, step, &mut tally);
+        volume.collide_pairs(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("move");
         volume.advect(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("admission");
         volume.admit(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("sort");
-        todo!();
+        volume.sort(&self.laws, gas, &mut self.space, step);
         tally
     }
 }

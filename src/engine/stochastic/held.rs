@@ -1,0 +1,93 @@
+//! Grains that may not go where they want to.
+
+use super::flight::Flights;
+use crate::law::restitution::Restitution;
+use crate::matter::columns::Columns;
+use crate::space::Vector;
+
+/// The grains that stay, and those that go along one axis only.
+#[derive(Debug, Default)]
+pub(crate) struct Held {
+    /// One bit for every row; empty where all grains go.
+    bits: Vec<u64>,
+    /// Rows that go along one axis, and that axis; in rising order.
+    slides: Vec<(u32, usize)>,
+    rows: usize,
+}
+
+impl Held {
+    /// All of `rows` may go.
+    pub(crate) fn clear(&mut self, rows: usize) {
+        self.bits.clear();
+        self.slides.clear();
+        self.rows = rows;
+    }
+
+    /// The grain in `row` stays where it is.
+    pub(crate) fn hold(&mut self, row: u32) {
+        self.bits.resize(self.rows.div_ceil(64), 0);
+        self.bits[row as usize / 64] |= 1 << (row % 64);
+    }
+
+    /// The grain in `row` makes only the part of its move along `axis`.
+    pub(crate) fn slide(&mut self, row: u32, axis: usize) {
+        self.hold(row);
+        let place = self.slides.partition_point(|&(other, _)| other < row);
+        self.slides.insert(place, (row, axis));
+    }
+
+    /// The rows that do not go where they want to.
+    pub(crate) fn rows(&self) -> Vec<u32> {
+        let word = |(place, &word): (usize, &u64)| {
+            let set = (0..64).filter(move |bit| word >> bit & 1 == 1);
+            set.map(move |bit| place as u32 * 64 + bit)
+        };
+        self.bits.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(word).collect()
+    }
+
+    /// Position and velocity of the grain in `row` after the move.
+    #[inline(always)]
+    pub(crate) fn flight<V: Vector, R: Restitution>(
+        &self,
+        flights: &Flights<'_, V, R>,
+        columns: &Columns<V>,
+        row: usize,
+    ) -> (V, V) {
+        if !self.bits.is_empty() && self.bits[row / 64] >> (row % 64) & 1 == 1 {
+            return self.held_flight(flights, columns, row);
+        }
+        let (there, gained) = flights.free(columns.positions[row], columns.velocities[row]);
+        if flights.is_free(there) { (there, gained) } else { flight_to_the_edge(flights, columns, row) }
+    }
+
+    /// A held grain keeps its velocity, and its position apart from what it slides.
+    #[cold]
+    #[inline(never)]
+    fn held_flight<V: Vector, R: Restitution>(
+        &self,
+        flights: &Flights<'_, V, R>,
+        columns: &Columns<V>,
+        row: usize,
+    ) -> (V, V) {
+        let (mut position, velocity) = (columns.positions[row], columns.velocities[row]);
+        if let Ok(slide) = self.slides.binary_search_by_key(&(row as u32), |&(row, _)| row) {
+            let axis = self.slides[slide].1;
+            let flight = flights.fly(position, velocity, columns.ids[row], &mut Default::default());
+            position[axis] = flight.position[axis];
+        }
+        (position, velocity)
+    }
+}
+
+/// The flight of a grain that comes near an edge.
+#[cold]
+#[inline(never)]
+fn flight_to_the_edge<V: Vector, R: Restitution>(
+    flights: &Flights<'_, V, R>,
+    columns: &Columns<V>,
+    row: usize,
+) -> (V, V) {
+    let (position, velocity, id) = (columns.positions[row], columns.velocities[row], columns.ids[row]);
+    let flight = flights.fly_to_the_edge(position, velocity, id, &mut Default::default());
+    (flight.position, flight.velocity)
+}
