@@ -8,7 +8,7 @@ use super::clock::Clock;
 use super::columns::Columns;
 use super::grain::Grain;
 use super::grid::Grid;
-use super::scatter::Labels;
+use super::scatter::{Labels, Slot};
 use super::sort::CountingSort;
 use crate::space::Vector;
 
@@ -170,21 +170,22 @@ impl<V: Vector> Gas<V> {
     /// Brings the own columns into the order of `space.cells`, through the spare ones.
     pub fn sort_through(&mut self, space: &mut SortSpace<V>) {
         space.sort.count(&space.cells[..self.columns.len()], self.grid.number_of_cells());
-        self.sort_counted(space, |columns, row| (columns.positions[row], columns.velocities[row]));
+        self.sort_counted(space, copy);
     }
 
-    /// [`Gas::sort_through`] after an engine has counted `space.cells` with `space.sort`; `moved` tells position
-    /// and velocity that the grain in a row of the columns gets on the way.
-    pub fn sort_counted(&mut self, space: &mut SortSpace<V>, moved: impl Fn(&Columns<V>, usize) -> (V, V) + Sync) {
+    /// [`Gas::sort_through`] after an engine has counted `space.cells` with `space.sort`; `put` brings the grain of a
+    /// row of the columns into its slot, and may move it on the way.
+    pub fn sort_counted(
+        &mut self,
+        space: &mut SortSpace<V>,
+        put: impl Fn(&Columns<V>, usize, Slot<'_, V>) + Sync,
+    ) {
         let kept = space.sort.accumulate(&mut self.offsets);
         space.spare.match_shape(&self.columns);
         space.spare.truncate(kept);
         let columns = &self.columns;
-        let grain = |row| {
-            let (position, velocity) = moved(columns, row);
-            (position, velocity, columns.ids[row])
-        };
-        space.sort.fill(&space.cells[..columns.len()], &mut space.spare, columns.labels(), grain);
+        let cells = &space.cells[..columns.len()];
+        space.sort.fill(cells, &mut space.spare, columns.labels(), |row, slot| put(columns, row, slot));
         std::mem::swap(&mut self.columns, &mut space.spare);
     }
 
@@ -200,8 +201,17 @@ impl<V: Vector> Gas<V> {
         let kept = space.sort.accumulate(&mut self.offsets);
         self.columns.resize(kept, &labels);
         let grid = &self.grid;
-        space.sort.fill(&space.cells, &mut self.columns, labels, |row| grain(grid, row));
+        space.sort.fill(&space.cells, &mut self.columns, labels, |row, slot| {
+            let (position, velocity, id) = grain(grid, row);
+            slot.put(position, velocity, id);
+        });
     }
+}
+
+/// Brings the grain of a row into its slot as it is.
+#[inline(always)]
+pub fn copy<V: Vector>(columns: &Columns<V>, row: usize, slot: Slot<'_, V>) {
+    slot.put(columns.positions[row], columns.velocities[row], columns.ids[row]);
 }
 
 #[cfg(test)]

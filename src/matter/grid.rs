@@ -180,16 +180,29 @@ impl<V: Vector> Grid<V> {
         if !self.periodic[axis] {
             return;
         }
-        let mut x = position[axis];
+        let x = position[axis];
         if x < self.origin[axis] || x >= self.end[axis] {
-            let turns = ((x - self.origin[axis]) / self.size[axis]).floor();
-            x -= turns * self.size[axis];
-            // Rounding may leave the result on the far edge, or a hair outside.
-            if !(x >= self.origin[axis] && x < self.end[axis]) {
-                x = self.origin[axis];
-            }
-            position[axis] = x;
+            position[axis] = self.wrapped_along(x, axis);
         }
+    }
+
+    /// `position` brought back into the box along all periodic axes.
+    #[inline(always)]
+    pub fn wrapped(&self, position: V) -> V {
+        V::from_fn(|axis| {
+            let x = position[axis];
+            let inside = x >= self.origin[axis] && x < self.end[axis];
+            if inside || !self.periodic[axis] { x } else { self.wrapped_along(x, axis) }
+        })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn wrapped_along(&self, x: f64, axis: usize) -> f64 {
+        let turns = ((x - self.origin[axis]) / self.size[axis]).floor();
+        let x = x - turns * self.size[axis];
+        // Rounding may leave the result on the far edge, or a hair outside.
+        if x >= self.origin[axis] && x < self.end[axis] { x } else { self.origin[axis] }
     }
 
     /// The shortest vector from `a` to `b` over periodic images [length].

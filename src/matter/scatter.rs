@@ -52,8 +52,36 @@ pub struct Labels<'a, V: Vector> {
     pub species: Option<&'a [u8]>,
 }
 
+/// Where one grain belongs in sorted columns.
+#[derive(Clone, Copy)]
+pub struct Slot<'a, V: Vector> {
+    columns: &'a SharedColumns<'a, V>,
+    place: usize,
+}
+
+/// The columns that a sort fills.
+struct SharedColumns<'a, V: Vector> {
+    positions: Shared<'a, V>,
+    velocities: Shared<'a, V>,
+    ids: Shared<'a, u32>,
+}
+
+impl<V: Vector> Slot<'_, V> {
+    /// Puts the grain there.
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "see the module")]
+    pub fn put(self, position: V, velocity: V, id: u32) {
+        // SAFETY: the sort gives no place twice, and slots are made by the sort alone.
+        unsafe {
+            self.columns.positions.put(self.place, position);
+            self.columns.velocities.put(self.place, velocity);
+            self.columns.ids.put(self.place, id);
+        }
+    }
+}
+
 impl CountingSort {
-    /// Fills `columns`, which are as long as grains stay, with `grain(row)`, position, velocity and identity, for all
+    /// Fills `columns`, which are as long as grains stay: `put` puts the grain of a row into its slot, for all
     /// rows of `cells`, in cell order. The sort has counted and accumulated these `cells`.
     #[expect(unsafe_code, reason = "see the module")]
     pub fn fill<V: Vector>(
@@ -61,20 +89,19 @@ impl CountingSort {
         cells: &[u32],
         columns: &mut Columns<V>,
         labels: Labels<'_, V>,
-        grain: impl Fn(usize) -> (V, V, u32) + Sync,
+        put: impl Fn(usize, Slot<'_, V>) + Sync,
     ) {
-        let positions = Shared::new(&mut columns.positions);
-        let velocities = Shared::new(&mut columns.velocities);
-        let ids = Shared::new(&mut columns.ids);
+        let shared = SharedColumns {
+            positions: Shared::new(&mut columns.positions),
+            velocities: Shared::new(&mut columns.velocities),
+            ids: Shared::new(&mut columns.ids),
+        };
         let spins = columns.spins.as_deref_mut().map(Shared::new).zip(labels.spins);
         let species = columns.species.as_deref_mut().map(Shared::new).zip(labels.species);
         self.place(cells, |row, place| {
-            let (position, velocity, id) = grain(row);
+            put(row, Slot { columns: &shared, place });
             // SAFETY: the sort gives no place twice.
             unsafe {
-                positions.put(place, position);
-                velocities.put(place, velocity);
-                ids.put(place, id);
                 if let Some((column, spins)) = &spins {
                     column.put(place, spins[row]);
                 }

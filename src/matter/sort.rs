@@ -77,7 +77,9 @@ impl CountingSort {
 
     fn clear(&mut self) {
         let groups = self.number_of_cells.div_ceil(GROUP);
-        for (cursors, touched) in self.cursors.chunks_mut(self.number_of_cells).zip(self.touched.chunks_mut(groups)) {
+        for (cursors, touched) in
+            self.cursors.chunks_mut(self.number_of_cells).zip(self.touched.chunks_mut(groups))
+        {
             for (cursors, touched) in cursors.chunks_mut(GROUP).zip(touched) {
                 if std::mem::take(touched) {
                     cursors.fill(0);

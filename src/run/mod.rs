@@ -24,7 +24,7 @@ use recorder::Recorder;
 use summary::Ending;
 
 /// Raised whenever a release changes the bits of a trajectory.
-pub const NUMERICS: u32 = 1;
+pub const NUMERICS: u32 = 2;
 
 /// Why a run could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]

@@ -49,7 +49,8 @@ pub(crate) fn parts<'a, V: Vector>(
     (1..=parts)
         .map(|part| {
             let end = grains * part / parts;
-            let blocks = std::iter::from_fn(|| blocks.next_if(|block| block.rows().end <= end || part == parts));
+            let blocks =
+                std::iter::from_fn(|| blocks.next_if(|block| block.rows().end <= end || part == parts));
             Part { blocks: blocks.collect() }
         })
         .collect()
@@ -103,7 +104,7 @@ impl<V: Vector> Block<'_, V> {
     }
 
     /// All its rows.
-    fn rows(&self) -> Range<usize> {
+    pub(crate) fn rows(&self) -> Range<usize> {
         self.first_row..self.first_row + self.ids.len()
     }
 

@@ -10,7 +10,7 @@ use super::blocks::Block;
 use super::displacement::Displacement;
 use super::enskog::EnskogFactors;
 use super::laws::Laws;
-use super::speed_bound::RelativeSpeeds;
+use super::relative_speeds::RelativeSpeeds;
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
 use crate::matter::grid::Grid;
@@ -147,7 +147,10 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
 
     /// Draws the candidates of all cells of the block.
     fn draw(&self, block: &Block<'_, V>, offsets: &[u32], tally: &mut Tally<V>) -> Draws {
-        let mut draws = Draws { candidates: Vec::with_capacity(block.ids.len()), cells: Vec::with_capacity(block.cells.len()) };
+        let mut draws = Draws {
+            candidates: Vec::with_capacity(block.ids.len()),
+            cells: Vec::with_capacity(block.cells.len()),
+        };
         for cell in block.cells.clone() {
             let rows = block.rows_of(cell, offsets);
             let grains = rows.len() as u32;

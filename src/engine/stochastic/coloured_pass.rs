@@ -12,7 +12,7 @@ use super::blocks::{Block, cut};
 use super::cell_pairs::Displaced;
 use super::parallel;
 use super::rules::DisplacementRule;
-use super::wishes::{Places, Wish};
+use super::wishes::Places;
 use crate::matter::columns::Columns;
 use crate::matter::grid::Grid;
 use crate::random::PhaseStreams;
@@ -24,7 +24,7 @@ pub(crate) struct Contested<'a, V> {
     pub(crate) cell: u32,
     /// The row from which the rows of the wishes count.
     pub(crate) first_row: usize,
-    pub(crate) wishes: &'a [Wish<V>],
+    pub(crate) wishes: &'a [Displaced<V>],
 }
 
 /// The parts of the pass.
@@ -56,14 +56,18 @@ impl<V: Vector> ColouredPass<'_, V> {
             .iter_mut()
             .map(|slab| {
                 let cells;
-                (cells, rest) = rest.split_at(rest.partition_point(|contested| contested.cell < slab.cells.end));
+                (cells, rest) =
+                    rest.split_at(rest.partition_point(|contested| contested.cell < slab.cells.end));
                 (slab, cells)
             })
             .collect();
         let mut carried = 0.0;
         for colour in colours_in_order(V::DIMENSION, order) {
             let parity = (colour >> last) as usize & 1;
-            let turns = work.iter_mut().enumerate().filter(|(slab, (_, cells))| slab % 2 == parity && !cells.is_empty());
+            let turns = work
+                .iter_mut()
+                .enumerate()
+                .filter(|(slab, (_, cells))| slab % 2 == parity && !cells.is_empty());
             let sums = parallel::map(grains, turns.collect(), |(_, (slab, cells))| {
                 self.slab(colour, &colours, slab, cells)
             });
@@ -73,7 +77,13 @@ impl<V: Vector> ColouredPass<'_, V> {
     }
 
     /// The cells of one colour in a slab, in the order of their numbers.
-    fn slab(&self, colour: u32, parities: &[Vec<u32>], slab: &mut Block<'_, V>, cells: &[Contested<'_, V>]) -> f64 {
+    fn slab(
+        &self,
+        colour: u32,
+        parities: &[Vec<u32>],
+        slab: &mut Block<'_, V>,
+        cells: &[Contested<'_, V>],
+    ) -> f64 {
         let mut carried = 0.0;
         for contested in cells {
             let home = self.places.grid.coordinates(contested.cell);
@@ -93,8 +103,7 @@ impl<V: Vector> ColouredPass<'_, V> {
         let cells = &mut slab.targets[rows];
         cells.fill(cell);
         let mut carried = 0.0;
-        for wish in contested.wishes {
-            let Displaced { pair: (i, j), shift, carried: momentum, .. } = wish.displaced;
+        for &Displaced { pair: (i, j), shift, carried: momentum, .. } in contested.wishes {
             let full = self.occupancy[cell as usize].load(Relaxed) >= self.places.capacity;
             if !full && self.displace(home, (i - start, j - start), shift, positions, cells) {
                 carried += momentum;

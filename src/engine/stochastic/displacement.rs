@@ -39,4 +39,3 @@ impl Displacement {
         (length > 0.0).then(|| direction * (distance / length))
     }
 }
-

@@ -6,7 +6,7 @@ use super::Step;
 use super::admission::{Moves, Rejected};
 use super::blocks::{Block, Part, parts, rows_of};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
-use super::cell_pairs::PairCollisions;
+use super::cell_pairs::{Displaced, PairCollisions};
 use super::coloured_pass::{ColouredPass, Contested};
 use super::flight::Flights;
 use super::held::Held;
@@ -14,8 +14,7 @@ use super::laws::{Laws, Room};
 use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
-use super::wishes::{Draft, Places, Wish, Wishes};
-use crate::engine::report::Counts;
+use super::wishes::{Places, Wishes};
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
 use crate::matter::gas::{Gas, SortSpace};
@@ -30,9 +29,7 @@ pub(crate) struct ExcludedVolume<V: Vector> {
     rules: HsmcRules,
     cell_collisions: CellCollisions<V>,
     /// `[block]`: displacements that the collisions of the step ask for.
-    wishes: Vec<Vec<Wish<V>>>,
-    /// Whether they have been granted already, as far as there was room.
-    granted: bool,
+    wishes: Vec<Vec<Displaced<V>>>,
     /// `[cell]`: grains that would enter if every wish came true.
     visitors: Vec<AtomicU32>,
     /// `[cell]`: grains now; kept only where cells get crowded.
@@ -42,7 +39,7 @@ pub(crate) struct ExcludedVolume<V: Vector> {
 }
 
 /// The blocks that one thread takes, each with its wishes.
-type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Wish<V>>)>;
+type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Displaced<V>>)>;
 
 impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
@@ -50,7 +47,6 @@ impl<V: Vector> ExcludedVolume<V> {
             rules,
             cell_collisions: CellCollisions::default(),
             wishes: Vec::new(),
-            granted: false,
             visitors: Vec::new(),
             occupancy: Vec::new(),
             held: Held::default(),
@@ -79,8 +75,7 @@ impl<V: Vector> ExcludedVolume<V> {
         self.cell_collisions.sweep(rules, gas, laws.streams, step.number, &mut tally.counts);
     }
 
-    /// Pairs collide inside cells. Their displacements are granted at once where cells are crowded, and with the
-    /// move where none is.
+    /// Pairs collide inside cells and are displaced where there is room.
     pub(crate) fn collide_pairs<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
@@ -92,34 +87,31 @@ impl<V: Vector> ExcludedVolume<V> {
         let capacity = self.capacity(gas);
         let (grid, offsets, columns) = gas.parts_mut();
         start_counts(&mut self.visitors, (1..offsets.len()).map(|_| 0));
-        let wishes = Wishes {
-            places: self.places(laws, grid, offsets, capacity, step),
-            visitors: &self.visitors,
-        };
+        let wishes =
+            Wishes { places: self.places(laws, grid, offsets, capacity, step), visitors: &self.visitors };
         let collisions = PairCollisions::new(laws, grid, offsets, step);
+        parallel::copy(&columns.positions, &mut space.spare.positions);
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
-        let tallies = parallel::each(parts.into_iter(), |part| {
-            let mut draft = Draft::default();
+        let results = parallel::each(parts.into_iter(), |part| {
             let blocks = part.into_iter().map(|(mut block, list)| {
+                let mut tally = Tally::default();
                 list.clear();
-                draft.begin(&block, offsets);
-                let (mut tally, mut crowded) = (Tally::default(), false);
                 collisions.collide(&mut block, offsets, &mut tally, |displaced, _| {
-                    crowded |= wishes.record(displaced, &mut draft, list);
+                    list.push(displaced);
                     false
                 });
-                (tally, crowded)
+                (tally, wishes.grant(list, &mut block))
             });
             blocks.collect::<Vec<_>>()
         });
-        self.granted = false;
-        for (block, crowded) in tallies.into_iter().flatten() {
+        let (mut crowded, mut carried) = (false, 0.0);
+        for (block, granted) in results.into_iter().flatten() {
             tally.add(&block);
-            self.granted |= crowded;
+            carried += granted.carried;
+            crowded |= granted.crowded;
         }
-        if self.granted {
-            self.grant(laws, gas, space, step, tally);
-        }
+        tally.counts.carried_momentum +=
+            if crowded { self.find_room(laws, gas, space, step) } else { carried };
     }
 
     fn places<'a, R: Restitution>(
@@ -134,38 +126,37 @@ impl<V: Vector> ExcludedVolume<V> {
         Places { grid, offsets, room, capacity, rule: self.rules.displacement }
     }
 
-    /// Grants wishes: those of calm cells first, then the others, colour by colour.
-    fn grant<R: Restitution>(
+    /// Where cells get crowded: calm cells keep what they were granted, the others are served again, colour by colour.
+    /// Returns what the displacements carry.
+    fn find_room<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
         gas: &mut Gas<V>,
         space: &mut SortSpace<V>,
         step: Step,
-        tally: &mut Tally<V>,
-    ) {
+    ) -> f64 {
         let capacity = self.capacity(gas);
         let (grid, offsets, columns) = gas.parts_mut();
         start_counts(&mut self.occupancy, offsets.windows(2).map(|ends| ends[1] - ends[0]));
         let places = self.places(laws, grid, offsets, capacity, step);
         let wishes = Wishes { places, visitors: &self.visitors };
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
-        let occupancy = &self.occupancy;
+        let (occupancy, originals) = (&self.occupancy, &space.spare.positions);
         let results = parallel::each(parts.into_iter(), |part| {
-            let (mut draft, mut contested) = (Draft::default(), Vec::new());
-            let tallies = part.into_iter().map(|(mut block, list)| {
-                wishes.grant_calm(list, &mut block, &mut draft, occupancy, &mut contested)
+            let mut contested = Vec::new();
+            let carried = part.into_iter().map(|(mut block, list)| {
+                let originals = &originals[block.rows()];
+                wishes.keep_calm(list, &mut block, originals, occupancy, &mut contested)
             });
-            let tallies: Vec<_> = tallies.collect();
-            (tallies, contested)
+            (carried.collect::<Vec<_>>(), contested)
         });
-        let mut contested = Vec::new();
-        for (tallies, cells) in results {
-            tallies.iter().for_each(|block| tally.add(block));
+        let (mut contested, mut carried) = (Vec::new(), 0.0);
+        for (blocks, cells) in results {
+            blocks.into_iter().for_each(|block| carried += block);
             contested.extend(cells.into_iter().map(|cell| contest(cell, &self.wishes, offsets)));
         }
         let order = laws.streams.at(step.number, Phase::Colours);
-        let pass = ColouredPass { places, occupancy };
-        tally.counts.carried_momentum += pass.run(&contested, columns, &mut space.cells, order);
+        carried + ColouredPass { places, occupancy }.run(&contested, columns, &mut space.cells, order)
     }
 
     /// Every grain says where it would go; nothing is decided yet.
@@ -177,23 +168,13 @@ impl<V: Vector> ExcludedVolume<V> {
         step: Step,
         tally: &mut Tally<V>,
     ) {
-        let capacity = self.capacity(gas);
         let (grid, offsets, columns) = gas.parts_mut();
-        let wishes = Wishes {
-            places: self.places(laws, grid, offsets, capacity, step),
-            visitors: &self.visitors,
-        };
         let flights = Flights::new(laws, grid, step);
         let parts = parts(offsets, columns, &mut space.cells);
         let counters = space.sort.begin(rows_of(&parts), grid.number_of_cells());
-        let parts = with_wishes(parts, &mut self.wishes, grid);
-        let granted = self.granted;
         let tallies = parallel::each(parts.into_iter().zip(counters), |(part, mut counter)| {
-            let blocks = part.into_iter().map(|(mut block, list)| {
+            let blocks = part.blocks.into_iter().map(|mut block| {
                 let mut tally = Tally::default();
-                if !granted {
-                    wishes.grant_all(list, &mut block, &mut tally);
-                }
                 announce(&flights, &mut block, &mut counter, &mut tally);
                 tally
             });
@@ -230,7 +211,9 @@ impl<V: Vector> ExcludedVolume<V> {
             Admission::Thesis => moves.reject_at_full_cells(),
         };
         tally.counts.rejected_moves += rejected.len() as u64;
-        rejected.iter().for_each(|&Rejected { row, .. }| take_back_wall_momentum(&flights, columns, row, tally));
+        rejected
+            .iter()
+            .for_each(|&Rejected { row, .. }| take_back_wall_momentum(&flights, columns, row, tally));
         if self.rules.admission == Admission::Strict {
             for axis in axes_with_gravity_last(laws.gravity) {
                 for row in moves.slide(axis, &mut rejected) {
@@ -240,8 +223,7 @@ impl<V: Vector> ExcludedVolume<V> {
         }
         rejected.iter().for_each(|rejected| self.held.hold(rejected.row));
         for row in self.held.rows() {
-            let (position, _) = self.held.flight(&flights, columns, row as usize);
-            if flights.is_out(position) {
+            if flights.is_out(self.held.held_position(&flights, columns, row as usize)) {
                 moves.send(row, REMOVED);
                 tally.counts.removed += 1;
             }
@@ -258,7 +240,7 @@ impl<V: Vector> ExcludedVolume<V> {
     ) {
         let grid = gas.grid().clone();
         let flights = Flights::new(laws, &grid, step);
-        gas.sort_counted(space, |columns, row| self.held.flight(&flights, columns, row));
+        gas.sort_counted(space, |columns, row, slot| self.held.put(&flights, columns, row, slot));
     }
 }
 
@@ -276,7 +258,7 @@ fn announce<V: Vector, R: Restitution>(
             speeds.note(gained);
             flights.cell_inside(there)
         } else {
-            meet_the_edge(flights, block, row, &mut speeds, &mut tally.counts)
+            meet_the_edge(flights, block, row, tally)
         };
         block.targets[row] = target;
         counter.add(target);
@@ -291,14 +273,13 @@ fn meet_the_edge<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
     block: &Block<'_, V>,
     row: usize,
-    speeds: &mut Speeds<V>,
-    counts: &mut Counts<V>,
+    tally: &mut Tally<V>,
 ) -> u32 {
     let (position, velocity) = (block.positions[row], block.velocities[row]);
-    let flight = flights.fly_to_the_edge(position, velocity, block.ids[row], &mut counts.wall_momentum);
-    speeds.note(flight.velocity);
+    let flight = flights.fly_to_the_edge(position, velocity, block.ids[row], &mut tally.counts.wall_momentum);
+    tally.speeds.note(flight.velocity);
     if flight.left {
-        counts.removed += 1;
+        tally.counts.removed += 1;
         return REMOVED;
     }
     flights.cell_of(flight.position)
@@ -307,7 +288,7 @@ fn meet_the_edge<V: Vector, R: Restitution>(
 /// Gives every block the wishes of its place.
 fn with_wishes<'a, V: Vector>(
     parts: Vec<Part<'a, V>>,
-    wishes: &'a mut Vec<Vec<Wish<V>>>,
+    wishes: &'a mut Vec<Vec<Displaced<V>>>,
     grid: &Grid<V>,
 ) -> Vec<WishingPart<'a, V>> {
     wishes.resize_with(Block::<V>::number_of(grid.number_of_cells() as u32 - 1) + 1, Vec::new);
@@ -317,18 +298,22 @@ fn with_wishes<'a, V: Vector>(
         lists.find(|(place, _)| *place == number).expect("every block has a list, in order").1
     };
     let parts = parts.into_iter().map(|part| {
-        part.blocks.into_iter().map(|block| (list(&block), block)).map(|(list, block)| (block, list)).collect()
+        part.blocks
+            .into_iter()
+            .map(|block| (list(&block), block))
+            .map(|(list, block)| (block, list))
+            .collect()
     });
     parts.collect()
 }
 
 /// The wishes of a cell.
-fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Wish<V>>], offsets: &[u32]) -> Contested<'a, V> {
+fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Displaced<V>>], offsets: &[u32]) -> Contested<'a, V> {
     let number = Block::<V>::number_of(cell);
     let first_cell = Block::<V>::first_cell(number);
     let list = &wishes[number];
-    let first = list.partition_point(|wish| wish.displaced.cell < cell);
-    let last = list.partition_point(|wish| wish.displaced.cell <= cell);
+    let first = list.partition_point(|wish| wish.cell < cell);
+    let last = list.partition_point(|wish| wish.cell <= cell);
     Contested { cell, first_row: offsets[first_cell as usize] as usize, wishes: &list[first..last] }
 }
 

@@ -3,6 +3,7 @@
 use super::flight::Flights;
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
+use crate::matter::scatter::Slot;
 use crate::space::Vector;
 
 /// The grains that stay, and those that go along one axis only.
@@ -45,49 +46,60 @@ impl Held {
         self.bits.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(word).collect()
     }
 
-    /// Position and velocity of the grain in `row` after the move.
+    /// Brings the grain of `row` to where it gets.
     #[inline(always)]
-    pub(crate) fn flight<V: Vector, R: Restitution>(
+    pub(crate) fn put<V: Vector, R: Restitution>(
         &self,
         flights: &Flights<'_, V, R>,
         columns: &Columns<V>,
         row: usize,
-    ) -> (V, V) {
-        if !self.bits.is_empty() && self.bits[row / 64] >> (row % 64) & 1 == 1 {
-            return self.held_flight(flights, columns, row);
-        }
+        slot: Slot<'_, V>,
+    ) {
         let (there, gained) = flights.free(columns.positions[row], columns.velocities[row]);
-        if flights.is_free(there) { (there, gained) } else { flight_to_the_edge(flights, columns, row) }
+        if flights.is_free(there) && !self.holds(row) {
+            slot.put(there, gained, columns.ids[row]);
+        } else {
+            self.put_with_care(flights, columns, row, slot);
+        }
     }
 
-    /// A held grain keeps its velocity, and its position apart from what it slides.
+    #[inline(always)]
+    fn holds(&self, row: usize) -> bool {
+        !self.bits.is_empty() && self.bits[row / 64] >> (row % 64) & 1 == 1
+    }
+
+    /// The rare cases. They write for themselves: a result handed back would go through memory, for all grains.
     #[cold]
     #[inline(never)]
-    fn held_flight<V: Vector, R: Restitution>(
+    fn put_with_care<V: Vector, R: Restitution>(
         &self,
         flights: &Flights<'_, V, R>,
         columns: &Columns<V>,
         row: usize,
-    ) -> (V, V) {
-        let (mut position, velocity) = (columns.positions[row], columns.velocities[row]);
+        slot: Slot<'_, V>,
+    ) {
+        let (position, velocity, id) = (columns.positions[row], columns.velocities[row], columns.ids[row]);
+        if self.holds(row) {
+            slot.put(self.held_position(flights, columns, row), velocity, id);
+        } else {
+            let flight = flights.fly_to_the_edge(position, velocity, id, &mut Default::default());
+            slot.put(flight.position, flight.velocity, id);
+        }
+    }
+
+    /// A held grain keeps its position apart from what it slides.
+    pub(crate) fn held_position<V: Vector, R: Restitution>(
+        &self,
+        flights: &Flights<'_, V, R>,
+        columns: &Columns<V>,
+        row: usize,
+    ) -> V {
+        let mut position = columns.positions[row];
         if let Ok(slide) = self.slides.binary_search_by_key(&(row as u32), |&(row, _)| row) {
             let axis = self.slides[slide].1;
-            let flight = flights.fly(position, velocity, columns.ids[row], &mut Default::default());
-            position[axis] = flight.position[axis];
+            let (velocity, id) = (columns.velocities[row], columns.ids[row]);
+            position[axis] = flights.fly(position, velocity, id, &mut Default::default()).position[axis];
         }
-        (position, velocity)
+        position
     }
-}
-
-/// The flight of a grain that comes near an edge.
-#[cold]
-#[inline(never)]
-fn flight_to_the_edge<V: Vector, R: Restitution>(
-    flights: &Flights<'_, V, R>,
-    columns: &Columns<V>,
-    row: usize,
-) -> (V, V) {
-    let (position, velocity, id) = (columns.positions[row], columns.velocities[row], columns.ids[row]);
-    let flight = flights.fly_to_the_edge(position, velocity, id, &mut Default::default());
-    (flight.position, flight.velocity)
 }

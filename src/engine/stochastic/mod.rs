@@ -16,8 +16,8 @@ mod gas_pass;
 mod held;
 pub mod laws;
 mod parallel;
+mod relative_speeds;
 pub mod rules;
-mod speed_bound;
 mod tally;
 mod time_step;
 mod wishes;
@@ -25,7 +25,7 @@ mod wishes;
 use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::law::restitution::Restitution;
-use crate::matter::gas::{Gas, SortSpace};
+use crate::matter::gas::{Gas, SortSpace, copy};
 use crate::space::Vector;
 use excluded_volume::ExcludedVolume;
 use laws::Laws;
@@ -68,7 +68,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("pair collisions and move");
         let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step);
         laps.start("sort");
-        gas.sort_counted(&mut self.space, |columns, row| (columns.positions[row], columns.velocities[row]));
+        gas.sort_counted(&mut self.space, copy);
         tally
     }
 

@@ -12,17 +12,8 @@ use super::blocks::Block;
 use super::cell_pairs::Displaced;
 use super::laws::Room;
 use super::rules::DisplacementRule;
-use super::tally::Tally;
 use crate::matter::grid::Grid;
 use crate::space::Vector;
-
-/// One collision's wish to displace its partners.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Wish<V> {
-    pub(crate) displaced: Displaced<V>,
-    /// Whether it is possible where all wishes of its cell before it have come true: no wall is in the way.
-    possible: bool,
-}
 
 /// What displaced grains have to respect.
 #[derive(Clone, Copy, Debug)]
@@ -34,39 +25,21 @@ pub(crate) struct Places<'a, V: Vector> {
     pub(crate) rule: DisplacementRule,
 }
 
-/// The wishes of a step are recorded, granted or put off.
+/// What came of the wishes of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Granted {
+    /// What the displacements carry.
+    pub(crate) carried: f64,
+    /// Whether some cell comes near its capacity.
+    pub(crate) crowded: bool,
+}
+
+/// The wishes of a step are granted or put off.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wishes<'a, V: Vector> {
     pub(crate) places: Places<'a, V>,
     /// `[cell]`: grains that would enter if every wish came true.
     pub(crate) visitors: &'a [AtomicU32],
-}
-
-/// Positions and cells of the grains of a block, as far as wishes have come true.
-#[derive(Debug)]
-pub(crate) struct Draft<V> {
-    positions: Vec<V>,
-    cells: Vec<u32>,
-    /// The last cell looked at and its coordinates.
-    home: (u32, [u32; 3]),
-}
-
-impl<V> Default for Draft<V> {
-    fn default() -> Self {
-        Draft { positions: Vec::new(), cells: Vec::new(), home: (u32::MAX, [0; 3]) }
-    }
-}
-
-impl<V: Vector> Draft<V> {
-    /// Everybody in `block` is where he is.
-    pub(crate) fn begin(&mut self, block: &Block<'_, V>, offsets: &[u32]) {
-        self.positions.clear();
-        self.positions.extend_from_slice(block.positions);
-        self.cells.clear();
-        for cell in block.cells.clone() {
-            self.cells.resize(block.rows_of(cell, offsets).end, cell);
-        }
-    }
 }
 
 impl<V: Vector> Places<'_, V> {
@@ -77,112 +50,126 @@ impl<V: Vector> Places<'_, V> {
     }
 
     /// A displaced position and its cell; `None` behind a wall or beyond the cells beside `home`.
-    #[inline]
-    pub(crate) fn place(&self, home: [u32; 3], mut position: V) -> Option<(V, u32)> {
+    #[inline(always)]
+    pub(crate) fn place(&self, home: [u32; 3], position: V) -> Option<(V, u32)> {
         if !self.room.holds(position) {
             return None;
         }
-        let mut there = [0; 3];
-        for axis in 0..V::DIMENSION {
-            self.grid.wrap(&mut position, axis);
-            there[axis] = self.grid.coordinate_of(position, axis);
-            let distance = there[axis].abs_diff(home[axis]);
+        let position = self.grid.wrapped(position);
+        let mut cell = 0;
+        for (axis, home) in home.into_iter().enumerate().take(V::DIMENSION) {
+            let there = self.grid.coordinate_of(position, axis);
+            let distance = there.abs_diff(home);
             if distance > 1 && !(self.grid.is_periodic(axis) && distance == self.grid.cells()[axis] - 1) {
                 return None;
             }
+            cell += there * self.grid.stride(axis);
         }
-        Some((position, self.grid.cell_at(there)))
+        Some((position, cell))
     }
 }
 
 impl<V: Vector> Wishes<'_, V> {
-    /// Notes a wish. Returns whether it brings some cell near its capacity.
-    #[inline]
-    pub(crate) fn record(&self, displaced: Displaced<V>, draft: &mut Draft<V>, wishes: &mut Vec<Wish<V>>) -> bool {
-        if self.places.occupancy(displaced.cell) >= self.places.capacity {
-            return false;
+    /// Grants all wishes of a block, in their order, as if nobody else had any, and counts the visitors that
+    /// this sends to other cells.
+    pub(crate) fn grant(&self, wishes: &[Displaced<V>], block: &mut Block<'_, V>) -> Granted {
+        for cell in block.cells.clone() {
+            let rows = block.rows_of(cell, self.places.offsets);
+            block.targets[rows].fill(cell);
         }
-        let mut crowded = false;
-        let possible = self.grant(displaced, draft, |cell| {
-            let before = self.visitors[cell as usize].fetch_add(1, Relaxed);
-            crowded |= self.places.occupancy(cell) + before + 1 >= self.places.capacity;
-        });
-        wishes.push(Wish { displaced, possible });
-        crowded
+        let mut granted = Granted::default();
+        let mut home = (u32::MAX, [0; 3]);
+        for &wish in wishes {
+            if self.places.occupancy(wish.cell) >= self.places.capacity {
+                continue;
+            }
+            if home.0 != wish.cell {
+                home = (wish.cell, self.places.grid.coordinates(wish.cell));
+            }
+            let enter = |cell: u32| {
+                let before = self.visitors[cell as usize].fetch_add(1, Relaxed);
+                granted.crowded |= self.places.occupancy(cell) + before + 1 >= self.places.capacity;
+            };
+            if self.displace(home.1, wish, block.positions, block.targets, enter) {
+                granted.carried += wish.carried;
+            }
+        }
+        granted
     }
 
-    /// Lets a wish come true in the draft, if no wall is in the way; `enter` is told of cells that a partner enters.
+    /// Displaces both partners, if no wall is in the way; `enter` is told of cells that a partner enters.
     #[inline(always)]
-    fn grant(&self, displaced: Displaced<V>, draft: &mut Draft<V>, mut enter: impl FnMut(u32)) -> bool {
-        let Displaced { cell, pair: (i, j), shift, .. } = displaced;
-        if draft.home.0 != cell {
-            draft.home = (cell, self.places.grid.coordinates(cell));
-        }
-        let home = draft.home.1;
-        let first = self.places.place(home, draft.positions[i] + shift);
-        let second = self.places.place(home, draft.positions[j] - shift);
-        let (Some(first), Some(second)) = (first, second) else { return false };
-        for (row, (position, cell)) in [(i, first), (j, second)] {
-            if cell != draft.cells[row] {
+    fn displace(
+        &self,
+        home: [u32; 3],
+        wish: Displaced<V>,
+        positions: &mut [V],
+        cells: &mut [u32],
+        mut enter: impl FnMut(u32),
+    ) -> bool {
+        let (i, j) = wish.pair;
+        let first = self.places.place(home, positions[i] + wish.shift);
+        let second = self.places.place(home, positions[j] - wish.shift);
+        let (Some((first, cell_i)), Some((second, cell_j))) = (first, second) else { return false };
+        for (row, cell) in [(i, cell_i), (j, cell_j)] {
+            if cell != cells[row] {
+                cells[row] = cell;
                 enter(cell);
             }
-            (draft.positions[row], draft.cells[row]) = (position, cell);
         }
+        (positions[i], positions[j]) = (first, second);
         true
     }
 
-    /// Grants all wishes of a block: no cell is crowded anywhere.
-    pub(crate) fn grant_all(&self, wishes: &[Wish<V>], block: &mut Block<'_, V>, tally: &mut Tally<V>) {
-        for wish in wishes.iter().filter(|wish| wish.possible) {
-            let Displaced { pair: (i, j), shift, carried, .. } = wish.displaced;
-            for (row, shift) in [(i, shift), (j, -shift)] {
-                let mut position = block.positions[row] + shift;
-                (0..V::DIMENSION).for_each(|axis| self.places.grid.wrap(&mut position, axis));
-                block.positions[row] = position;
-            }
-            tally.counts.carried_momentum += carried;
-        }
-    }
-
-    /// Grants the wishes of calm cells, and keeps `occupancy` `[cell]` up to date; the others are added to `contested`.
-    pub(crate) fn grant_calm(
+    /// Where cells have turned out crowded: what has been granted to calm cells stays, and `occupancy` `[cell]` follows;
+    /// other cells get their `original` positions back and are added to `contested`. Returns what the displacements of
+    /// calm cells carry.
+    pub(crate) fn keep_calm(
         &self,
-        wishes: &[Wish<V>],
+        wishes: &[Displaced<V>],
         block: &mut Block<'_, V>,
-        draft: &mut Draft<V>,
+        original: &[V],
         occupancy: &[AtomicU32],
         contested: &mut Vec<u32>,
-    ) -> Tally<V> {
-        let mut tally = Tally::default();
-        draft.begin(block, self.places.offsets);
-        for wishes in wishes.chunk_by(|a, b| a.displaced.cell == b.displaced.cell) {
-            let cell = wishes[0].displaced.cell;
-            if !self.is_calm(cell, wishes, draft) {
-                contested.push(cell);
+    ) -> f64 {
+        let mut carried = 0.0;
+        let mut draft = original.to_vec();
+        for wishes in wishes.chunk_by(|a, b| a.cell == b.cell) {
+            let cell = wishes[0].cell;
+            let rows = block.rows_of(cell, self.places.offsets);
+            block.targets[rows.clone()].fill(cell);
+            if self.places.occupancy(cell) >= self.places.capacity {
                 continue;
             }
-            for row in block.rows_of(cell, self.places.offsets) {
-                block.positions[row] = draft.positions[row];
-                if draft.cells[row] != cell {
-                    occupancy[cell as usize].fetch_sub(1, Relaxed);
-                    occupancy[draft.cells[row] as usize].fetch_add(1, Relaxed);
-                }
+            let Some(granted) = self.calm(wishes, &mut draft, block.targets) else {
+                block.positions[rows.clone()].copy_from_slice(&original[rows]);
+                contested.push(cell);
+                continue;
+            };
+            carried += granted;
+            for &now in block.targets[rows].iter().filter(|&&now| now != cell) {
+                occupancy[cell as usize].fetch_sub(1, Relaxed);
+                occupancy[now as usize].fetch_add(1, Relaxed);
             }
-            let granted = wishes.iter().filter(|wish| wish.possible);
-            tally.counts.carried_momentum += granted.map(|wish| wish.displaced.carried).sum::<f64>();
         }
-        tally
+        carried
     }
 
-    /// Whether the wishes of `cell` are granted in every order of all cells; the draft tells where they lead.
-    fn is_calm(&self, cell: u32, wishes: &[Wish<V>], draft: &mut Draft<V>) -> bool {
+    /// What the displacements of one cell carry, if its wishes are granted in every order of all cells.
+    fn calm(&self, wishes: &[Displaced<V>], positions: &mut [V], cells: &mut [u32]) -> Option<f64> {
         let most = |cell: u32| self.places.occupancy(cell) + self.visitors[cell as usize].load(Relaxed);
-        let mut calm = most(cell) < self.places.capacity;
-        for wish in wishes {
-            self.grant(wish.displaced, draft, |entered| {
+        let home = wishes[0].cell;
+        let mut calm = most(home) < self.places.capacity;
+        let coordinates = self.places.grid.coordinates(home);
+        let mut carried = 0.0;
+        for &wish in wishes {
+            let enter = |entered| {
                 calm &= self.places.rule == DisplacementRule::Thesis || most(entered) <= self.places.capacity;
-            });
+            };
+            if self.displace(coordinates, wish, positions, cells, enter) {
+                carried += wish.carried;
+            }
         }
-        calm
+        calm.then_some(carried)
     }
 }
