@@ -24,16 +24,20 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 pub(crate) const VOLUME_FRACTION: f64 = 0.25;
 /// Grains per cell where the box is periodic.
 const PER_CELL: f64 = 10.0;
-/// What the scenario `clustering` says: collisions per particle to its end, restitution.
-const CLUSTERING: (f64, f64) = (100.0, 0.8);
-/// Collisions per particle and step on the way there: twice the scenario's, to come there in half the time.
-const CLUSTERING_STEP: f64 = 0.2;
+/// Restitution of the scenario `clustering`.
+const CLUSTERING_RESTITUTION: f64 = 0.8;
+/// Collisions per particle until there are clusters, in two dimensions (the end of that scenario) and in three.
+const CLUSTERING_COLLISIONS: [f64; 2] = [100.0, 300.0];
+/// Collisions per particle and step on the way there.
+const CLUSTERING_STEP: f64 = 0.5;
 /// Grains, width and height of the box of `heap-full`, and the height of its heap over half its base.
 const HEAP: (f64, f64, f64, f64) = (30_500.0, 800.0, 320.0, 0.6);
 /// Width of such a box for spheres: the heap takes the same share of it.
 const HEAP_WIDTH_3D: f64 = 83.0;
-/// Steps in which a heap built of full cells comes to rest.
-const SETTLING: usize = 300;
+/// A heap built of full cells comes to rest: it is stopped so often, then goes on for so many steps.
+const STOPS: usize = 40;
+const STEPS_BETWEEN_STOPS: usize = 10;
+const SETTLING: usize = 200;
 
 /// What is timed.
 #[derive(Clone, Copy, Debug)]
@@ -139,8 +143,9 @@ fn clustered<V: Vector>(case: Case, scenario: &Scenario<V>) -> Run<V> {
     maker.engine.kind = EngineKind::Hsmc;
     maker.engine.time_step = TimeStep::CollisionsPerParticle(CLUSTERING_STEP);
     let mut making = run(case, &maker, initial::build(&maker, None).expect("a random gas can be built"));
+    let goal = CLUSTERING_COLLISIONS[V::DIMENSION - 2];
     let mut collisions = 0;
-    while 2.0 * collisions as f64 <= CLUSTERING.0 * case.grains as f64 {
+    while 2.0 * collisions as f64 <= goal * case.grains as f64 {
         collisions += making.step(&mut NoLaps);
     }
     let mut clustered = run(case, scenario, making.gas);
@@ -158,20 +163,25 @@ fn heap<V: Vector>(case: Case, scenario: &Scenario<V>) -> Run<V> {
         let at = grid.coordinates(cell);
         V::from_fn(|axis| grid.origin()[axis] + f64::from(at[axis]) * grid.side()[axis])
     };
-    // How high the roof above the cell begins, at the middle of the box.
+    // How high above the middle of the box a roof over the cell begins.
     let roof = |cell: &u32| {
-        let middle = corner(*cell) + grid.side() * 0.5 - (grid.origin() + grid.size() * 0.5);
-        let aside = (0..vertical).map(|axis| middle[axis].powi(2)).sum::<f64>().sqrt();
-        middle[vertical] + HEAP.3 * aside
+        let place = corner(*cell) + grid.side() * 0.5 - (grid.origin() + grid.size() * 0.5);
+        let aside = (0..vertical).map(|axis| place[axis].powi(2)).sum::<f64>().sqrt();
+        place[vertical] + HEAP.3 * aside
     };
     let mut cells: Vec<u32> = (0..grid.number_of_cells() as u32).collect();
     cells.sort_by(|a, b| roof(a).total_cmp(&roof(b)));
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let positions: Vec<V> = (0..case.grains)
+    let positions = (0..case.grains)
         .map(|grain| corner(cells[grain / capacity as usize]) + V::from_fn(|a| uniform() * grid.side()[a]))
         .collect();
     run.gas = Gas::new(grid, scenario.grain, positions, vec![V::ZERO; case.grains]);
+    for _ in 0..STOPS {
+        (0..STEPS_BETWEEN_STOPS).for_each(|_| _ = run.step(&mut NoLaps));
+        run.gas.velocities_mut().fill(V::ZERO);
+        run.engine.forget_pace();
+    }
     (0..SETTLING).for_each(|_| _ = run.step(&mut NoLaps));
     run
 }
@@ -197,7 +207,7 @@ fn text(case: Case) -> String {
         2 => geometry::<DVec2>(grains, volume_fraction),
         _ => geometry::<DVec3>(grains, volume_fraction),
     };
-    let restitution = if state == "clustered" { CLUSTERING.1 } else { 1.0 };
+    let restitution = if state == "clustered" { CLUSTERING_RESTITUTION } else { 1.0 };
     let positions = if engine == "event-driven" { "lattice" } else { "random" };
     format!(
         "dimension = {dimension}\n[engine]\nkind = \"{engine}\"\ncell_size = {:?}\n\
