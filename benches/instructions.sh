@@ -54,6 +54,7 @@ fi
 [ -f "$kept" ] || { echo "$kept is missing; $0 --renew makes it" >&2; exit 1; }
 awk -F, -v file="$kept" '
     /^#/ { if (FNR == 2) compiler[NR == FNR] = $0; next }
+    NF < 2 { next }
     NR == FNR { kept[$1] = $2; next }
     FNR <= 3 { printf "%-16s %10s %10s %8s\n", "case", "kept", "now", "change" }
     {
