@@ -23,8 +23,6 @@ fi
 rounds=${ROUNDS:-5}
 place=$root/target/compare
 mkdir -p "$place"
-# Dependencies are built once for both.
-export CARGO_TARGET_DIR=$place/build
 
 # Checks a commit out into the worktree of a side, and gives it benches where it has none.
 check_out() {
@@ -47,23 +45,24 @@ check_out() {
     mv "$tree/Cargo.new" "$tree/Cargo.toml"
 }
 
-# Builds the bench in a tree; the program becomes target/compare/SIDE-steps.
+# Builds the bench in a tree; the program becomes target/compare/SIDE-steps. Each tree has a folder of its own to build in:
+# in one folder cargo would take the one tree's unchanged files for those of the other.
 build() {
-    local side=$1 tree=$2 message
+    local side=$1 tree=$2 folder=$3 message
     echo "building $side" >&2
-    message=$(cd "$tree" && cargo bench --bench steps --no-run --message-format=json-render-diagnostics) ||
+    message=$(cd "$tree" && CARGO_TARGET_DIR=$folder cargo bench --bench steps --no-run --message-format=json-render-diagnostics) ||
         { echo "$side does not build with these benches: $tree" >&2; exit 1; }
     message=$(grep '"name":"steps"' <<< "$message" | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
     cp "$message" "$place/$side-steps"
 }
 
 check_out base "$base"
-build base "$place/base"
+build base "$place/base" "$place/base-build"
 if [ -n "$other" ]; then
     check_out other "$other"
-    build other "$place/other"
+    build other "$place/other" "$place/other-build"
 else
-    build other "$root"
+    build other "$root" "$root/target"
 fi
 
 rm -f "$place"/base.csv "$place"/other.csv
