@@ -1,51 +1,25 @@
-//! Each engine, dimension and size, the yardstick, the sort alone, and the writing of a log.
+//! The sort alone, and the writing of a log. `cargo bench --bench engines`.
 //!
-//! Throughput in elements is particle-steps. `cargo bench --bench engines`.
-
-mod support;
+//! Whole steps and their verbs: `cargo bench --bench steps`.
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use grainflow::matter::columns::Columns;
 use grainflow::matter::sort::CountingSort;
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::frame::frame;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
-use grainflow::space::Vector;
-use support::cases::{VOLUME_FRACTION, geometry, scenario, stepper, yardstick};
 
 const SIZES: [usize; 2] = [10_000, 1_000_000];
-const COLLISIONS: f64 = 0.5;
-
-fn engines(criterion: &mut Criterion) {
-    of_dimension::<DVec2, 2>(criterion);
-    of_dimension::<DVec3, 3>(criterion);
-}
-
-fn of_dimension<V: Vector, const D: usize>(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group(format!("step-{D}d"));
-    group.sample_size(10);
-    for grains in SIZES {
-        group.throughput(Throughput::Elements(grains as u64));
-        let mut kernel = yardstick::<V, D>(grains, COLLISIONS);
-        let (sigma, g) = (V::cross_section(1.0), V::contact_correlation(VOLUME_FRACTION));
-        group.bench_function(BenchmarkId::new("yardstick", grains), |b| b.iter(|| kernel.step(sigma, g)));
-        for engine in ["dsmc", "cba", "hsmc"] {
-            let scenario = scenario::<V>(engine, grains, COLLISIONS);
-            let mut step = stepper(&scenario);
-            group.bench_function(BenchmarkId::new(engine, grains), |b| b.iter(&mut step));
-        }
-    }
-    group.finish();
-}
 
 /// The stable counting sort of grains that have moved a little, without the move of their columns.
 fn sort(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sort");
     for grains in SIZES {
-        let (_, per_axis) = geometry::<DVec2>(grains);
+        // Ten grains per cell, an even number along each side.
+        let per_axis = 2 * (0.5 * (0.1 * grains as f64).sqrt()).round() as usize;
         let number_of_cells = per_axis * per_axis;
         let home = |row: usize| row * number_of_cells / grains;
         let away = |row: usize| [0, 0, 0, 1, per_axis][row * 7 % 5];
@@ -94,5 +68,5 @@ fn log(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, engines, sort, log);
+criterion_group!(benches, sort, log);
 criterion_main!(benches);

@@ -5,13 +5,16 @@
 
 #![expect(clippy::print_stdout, reason = "a table is what this program is for")]
 
+#[expect(dead_code, reason = "other states and going back are for the bench `steps`")]
 mod support;
 
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
+use grainflow::engine::NoLaps;
 use grainflow::space::Vector;
-use support::cases::{scenario, stepper, yardstick};
+use support::cases::{Case, build};
+use support::yardstick::yardstick;
 
 /// Rounds; each round times every contestant once.
 const ROUNDS: usize = 7;
@@ -37,15 +40,16 @@ fn main() {
 }
 
 /// A name and what makes one step.
-type Contestant<'a> = (&'a str, Box<dyn FnMut() + 'a>);
+type Contestant = (&'static str, Box<dyn FnMut()>);
 
 /// Times yardstick and engines in turn and prints a line for each.
 fn compare<V: Vector, const D: usize>(threads: usize, grains: usize, collisions: f64) {
-    let mut kernel = yardstick::<V, D>(grains, collisions);
-    let (sigma, g) = (V::cross_section(1.0), V::contact_correlation(support::cases::VOLUME_FRACTION));
-    let engines = ["dsmc", "cba", "hsmc"].map(|engine| (engine, scenario::<V>(engine, grains, collisions)));
-    let mut contestants: Vec<Contestant<'_>> = vec![("yardstick", Box::new(|| kernel.step(sigma, g)))];
-    contestants.extend(engines.iter().map(|(name, scenario)| (*name, stepper(scenario))));
+    let mut contestants: Vec<Contestant> =
+        vec![("yardstick", Box::new(yardstick::<V, D>(grains, collisions)))];
+    for engine in ["dsmc", "cba", "hsmc"] {
+        let mut running = build(Case { engine, dimension: D, state: "gas", grains, collisions });
+        contestants.push((engine, Box::new(move || _ = running.step(&mut NoLaps))));
+    }
     for (_, step) in &mut contestants {
         (0..3).for_each(|_| step());
     }

@@ -4,11 +4,26 @@
 //! then collisions with a loose majorant. No walls, no displacement, no Enskog factor, no
 //! reproducible streams. Engines are judged by their ratio to it in the same run.
 
+use grainflow::law::kinetic_theory::collision_frequency;
+use grainflow::matter::grain::Grain;
+use grainflow::space::Vector;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
+use super::cases::{VOLUME_FRACTION, geometry};
+
 /// Bound on relative speeds in units of the thermal speed: about three candidates per collision.
 const MAJORANT: f64 = 5.4;
+
+/// The kernel on the state `gas`, with so many collisions per particle and step, as a closure that makes one.
+pub(crate) fn yardstick<V: Vector, const D: usize>(grains: usize, collisions: f64) -> impl FnMut() {
+    let (side, cells) = geometry::<V>(grains, VOLUME_FRACTION);
+    let grain = Grain { diameter: 1.0, mass: 1.0 };
+    let (sigma, g) = (V::cross_section(1.0), V::contact_correlation(VOLUME_FRACTION));
+    let duration = collisions / collision_frequency::<V>(grain, VOLUME_FRACTION, 1.0, g);
+    let mut kernel = Yardstick::<D>::new(grains, side, cells, duration);
+    move || kernel.step(sigma, g)
+}
 
 /// A periodic elastic gas of grains of unit diameter and mass at unit temperature, D = 2 or 3.
 pub(crate) struct Yardstick<const D: usize> {
