@@ -3,7 +3,7 @@
 //! A generator is made where it is needed, used and dropped. Results therefore do not
 //! depend on the number of threads, on what was recorded, or on where a run was interrupted.
 
-use rand_xoshiro::Xoroshiro128PlusPlus;
+use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// What a stream is used for; streams of different phases are independent.
@@ -43,10 +43,9 @@ pub struct PhaseStreams {
     key: u64,
 }
 
-/// One stream of random numbers: xoroshiro128++ (Blackman and Vigna 2021). Its state fills two registers
-/// and is quickly seeded: a stream often serves one cell for one step.
+/// One stream of random numbers: xoshiro256++ (Blackman and Vigna 2021).
 #[derive(Clone, Debug)]
-pub struct Stream(Xoroshiro128PlusPlus);
+pub struct Stream(Xoshiro256PlusPlus);
 
 impl Streams {
     /// The streams of `seed`.
@@ -70,7 +69,7 @@ impl PhaseStreams {
     /// The stream of `place`: a cell, a grain's id, a serial number.
     #[inline]
     pub fn stream(self, place: u64) -> Stream {
-        Stream(Xoroshiro128PlusPlus::seed_from_u64(self.hash(place)))
+        Stream(Xoshiro256PlusPlus::seed_from_u64(self.hash(place)))
     }
 
     /// One well-mixed number for `place`, for rankings.
