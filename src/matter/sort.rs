@@ -109,10 +109,25 @@ impl CountingSort {
     /// Cells that more than `capacity` grains go to, in rising order.
     pub fn cells_above(&self, capacity: u32) -> Vec<u32> {
         let groups = self.number_of_cells.div_ceil(GROUP);
-        let touched = |group: &usize| self.touched[*group..].iter().step_by(groups).any(|&touched| touched);
-        let cells = |group: usize| group * GROUP..((group + 1) * GROUP).min(self.number_of_cells);
-        let cells = (0..groups).filter(touched).flat_map(cells).map(|cell| cell as u32);
-        cells.filter(|&cell| self.total(cell) > capacity).collect()
+        let mut above = Vec::new();
+        for group in (0..groups).filter(|&group| self.is_touched(group)) {
+            let mut totals = [0; GROUP];
+            for counts in self.cursors.chunks(self.number_of_cells) {
+                let counts = &counts[group * GROUP..((group + 1) * GROUP).min(self.number_of_cells)];
+                totals.iter_mut().zip(counts).for_each(|(total, count)| *total += count);
+            }
+            if totals.iter().any(|&total| total > capacity) {
+                let cells = (group * GROUP) as u32..;
+                above.extend(cells.zip(totals).filter(|&(_, total)| total > capacity).map(|(cell, _)| cell));
+            }
+        }
+        above
+    }
+
+    /// Whether some grain goes to a cell of the group.
+    fn is_touched(&self, group: usize) -> bool {
+        let groups = self.number_of_cells.div_ceil(GROUP);
+        self.touched[group..].iter().step_by(groups).any(|&touched| touched)
     }
 
     /// Counts a grain of `row` over from one cell to another.
@@ -134,12 +149,19 @@ impl CountingSort {
         let mut place = 0;
         for group in 0..groups {
             let span = group * GROUP..((group + 1) * GROUP).min(cells);
-            let touched = self.touched[group..].iter().step_by(groups).any(|&touched| touched);
-            if !touched {
+            if !self.is_touched(group) {
                 offsets[span].fill(place);
                 continue;
             }
+            // The cursors of all parts are about to be written.
             self.touched[group..].iter_mut().step_by(groups).for_each(|touched| *touched = true);
+            if self.parts.len() == 1 {
+                for (offset, cursor) in offsets[span.clone()].iter_mut().zip(&mut self.cursors[span]) {
+                    *offset = place;
+                    place += std::mem::replace(cursor, place);
+                }
+                continue;
+            }
             for cell in span {
                 offsets[cell] = place;
                 for cursor in self.cursors[cell..].iter_mut().step_by(cells) {

@@ -5,8 +5,6 @@
 //! accepted ones are always a prefix of that ranking and only ever become fewer, so every
 //! order of work reaches the same set: the result depends on no order of cells or threads.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 
 use crate::matter::grid::Grid;
@@ -34,8 +32,10 @@ pub(crate) struct Moves<'a, V: Vector> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rejected {
     pub(crate) row: u32,
+    /// The cell it is in.
+    source: u32,
     /// The cell it wanted to enter.
-    pub(crate) wanted: u32,
+    wanted: u32,
 }
 
 /// A mover that wants to enter a contested cell; the lower rank has precedence.
@@ -45,6 +45,18 @@ struct Bid {
     rank: u64,
     id: u32,
     row: u32,
+    source: u32,
+}
+
+/// Arrivals at contested cells.
+#[derive(Debug, Default)]
+struct Contests {
+    /// By cell, and in it by rank.
+    bids: Vec<Bid>,
+    /// `[bid]`: of the first bid at a cell, how many of the last ones there have lost.
+    lost: Vec<u32>,
+    /// Whether all movers have bid; otherwise only those to the cells that were above capacity first.
+    complete: bool,
 }
 
 impl<V: Vector> Moves<'_, V> {
@@ -61,9 +73,10 @@ impl<V: Vector> Moves<'_, V> {
         for row in 0..self.targets.len() as u32 {
             let wanted = self.targets[row as usize];
             let refused = wanted != REMOVED && occupancy[wanted as usize] >= self.capacity;
-            if refused && wanted != self.source(row) {
-                self.reject(row);
-                rejected.push(Rejected { row, wanted });
+            let source = self.source(row);
+            if refused && wanted != source {
+                self.send(row, source);
+                rejected.push(Rejected { row, source, wanted });
             }
         }
         rejected
@@ -71,37 +84,60 @@ impl<V: Vector> Moves<'_, V> {
 
     /// The strict rule: the least set of rejections that leaves no cell above its capacity. In rising order of rows.
     pub(crate) fn reject_surplus(&mut self) -> Vec<Rejected> {
-        let mut contests: BTreeMap<u32, Vec<Bid>> = BTreeMap::new();
-        let mut rejected = Vec::new();
         let mut above = self.counts.cells_above(self.capacity);
-        while !above.is_empty() {
-            self.open_contests(&above, &mut contests);
-            let mut next = Vec::new();
-            while let Some(cell) = above.pop() {
-                while self.counts.total(cell) > self.capacity
-                    && let Some(loser) = contests.get_mut(&cell).and_then(Vec::pop)
-                {
-                    rejected.push(Rejected { row: loser.row, wanted: cell });
-                    let source = self.reject(loser.row);
-                    if self.counts.total(source) > self.capacity {
-                        let known = contests.contains_key(&source);
-                        if known { &mut above } else { &mut next }.push(source);
+        if above.is_empty() {
+            return Vec::new();
+        }
+        let mut contests = Contests::new(self.bids(Some(&above)), false);
+        let mut rejected = Vec::new();
+        while let Some(cell) = above.pop() {
+            let surplus = self.counts.total(cell).saturating_sub(self.capacity);
+            for _ in 0..surplus {
+                let Some(Bid { row, source, .. }) = contests.reject_last(cell) else {
+                    if contests.complete {
+                        break;
                     }
+                    contests = Contests::new(self.bids(None), true);
+                    above.push(cell);
+                    break;
+                };
+                rejected.push(Rejected { row, source, wanted: cell });
+                self.send(row, source);
+                if self.counts.total(source) > self.capacity {
+                    above.push(source);
                 }
             }
-            next.sort_unstable();
-            next.dedup();
-            above = next;
         }
         rejected.sort_unstable();
         rejected
     }
 
-    /// Sends a grain back to where it came from; returns that cell.
-    fn reject(&mut self, row: u32) -> u32 {
-        let source = self.source(row);
-        self.send(row, source);
-        source
+    /// The bids of grains that would change cells; only at `cells`, where these are given.
+    fn bids(&self, cells: Option<&[u32]>) -> Vec<Bid> {
+        let mut contested = vec![0_u64; cells.map_or(0, |_| self.grid.number_of_cells().div_ceil(64))];
+        for &cell in cells.into_iter().flatten() {
+            contested[cell as usize / 64] |= 1 << (cell % 64);
+        }
+        let is_contested =
+            |cell: u32| cells.is_none() || contested[cell as usize / 64] >> (cell % 64) & 1 == 1;
+        let bid = |(row, &cell): (usize, &u32)| {
+            if cell == REMOVED || !is_contested(cell) {
+                return None;
+            }
+            let source = self.source(row as u32);
+            (cell != source).then(|| self.bid(row as u32, source, cell))
+        };
+        let targets = &*self.targets;
+        if targets.len() < FEWEST_GRAINS {
+            targets.iter().enumerate().filter_map(bid).collect()
+        } else {
+            targets.par_iter().enumerate().with_min_len(FEWEST_GRAINS).filter_map(bid).collect()
+        }
+    }
+
+    fn bid(&self, row: u32, source: u32, cell: u32) -> Bid {
+        let id = self.ids[row as usize];
+        Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row, source }
     }
 
     /// Sends a grain elsewhere.
@@ -110,42 +146,14 @@ impl<V: Vector> Moves<'_, V> {
         self.counts.recount(row as usize, before, target);
     }
 
-    /// Ranks the arrivals at `cells`, the best first.
-    fn open_contests(&self, cells: &[u32], contests: &mut BTreeMap<u32, Vec<Bid>>) {
-        let mut wanted = vec![0_u64; self.grid.number_of_cells().div_ceil(64)];
-        for &cell in cells {
-            wanted[cell as usize / 64] |= 1 << (cell % 64);
-            contests.entry(cell).or_default();
-        }
-        let bid = |(row, &cell): (usize, &u32)| {
-            let contested = cell != REMOVED && wanted[cell as usize / 64] >> (cell % 64) & 1 == 1;
-            (contested && cell != self.source(row as u32)).then(|| self.bid(row as u32, cell))
-        };
-        let targets = &*self.targets;
-        let mut bids: Vec<Bid> = if targets.len() < FEWEST_GRAINS {
-            targets.iter().enumerate().filter_map(bid).collect()
-        } else {
-            targets.par_iter().enumerate().with_min_len(FEWEST_GRAINS).filter_map(bid).collect()
-        };
-        bids.sort_unstable();
-        for bids in bids.chunk_by(|a, b| a.cell == b.cell) {
-            contests.insert(bids[0].cell, bids.to_vec());
-        }
-    }
-
-    fn bid(&self, row: u32, cell: u32) -> Bid {
-        let id = self.ids[row as usize];
-        Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row }
-    }
-
     /// Lets rejected diagonal movers take the part of their move along `axis`, where the
     /// face neighbour has room; winners by the same ranking. Returns their rows, in rising order; they
     /// are no longer among the rejected.
     pub(crate) fn slide(&mut self, axis: usize, rejected: &mut Vec<Rejected>) -> Vec<u32> {
         let mut bids: Vec<Bid> = rejected
             .iter()
-            .filter_map(|&Rejected { row, wanted }| {
-                Some(self.bid(row, face_cell(self.grid, axis, self.source(row), wanted)?))
+            .filter_map(|&Rejected { row, source, wanted }| {
+                Some(self.bid(row, source, face_cell(self.grid, axis, source, wanted)?))
             })
             .collect();
         bids.sort_unstable();
@@ -161,6 +169,23 @@ impl<V: Vector> Moves<'_, V> {
         rows.sort_unstable();
         rejected.retain(|rejected| rows.binary_search(&rejected.row).is_err());
         rows
+    }
+}
+
+impl Contests {
+    fn new(mut bids: Vec<Bid>, complete: bool) -> Self {
+        bids.sort_unstable();
+        let lost = vec![0; bids.len()];
+        Contests { bids, lost, complete }
+    }
+
+    /// The last of the arrivals at `cell` that are still accepted loses; `None` where there is none, or nobody has bid.
+    fn reject_last(&mut self, cell: u32) -> Option<Bid> {
+        let first = self.bids.partition_point(|bid| bid.cell < cell);
+        let all = self.bids[first..].partition_point(|bid| bid.cell == cell);
+        let accepted = all.checked_sub(*self.lost.get(first)? as usize + 1)?;
+        self.lost[first] += 1;
+        Some(self.bids[first + accepted])
     }
 }
 
