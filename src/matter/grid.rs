@@ -225,6 +225,7 @@ impl<V: Vector> Grid<V> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::{Phase, Streams};
     use glam::{DVec2, DVec3};
 
     #[test]
@@ -239,6 +240,27 @@ mod tests {
             assert_eq!(grid.cell_of(grid.centre(cell)), cell);
             assert_eq!(grid.cell_at(grid.coordinates(cell)), cell);
         }
+    }
+
+    #[test]
+    fn the_short_way_finds_the_same_cell_and_faces_count_to_the_upper_one() {
+        let grid = Grid::new(DVec2::new(-0.7, 3.0), DVec2::new(1.1, 7.0), &[11, 70], &[true, false]);
+        let mut random = Streams::new(4).at(0, Phase::InitialPositions).stream(0);
+        for _ in 0..10_000 {
+            let share = DVec2::new(random.uniform(), random.uniform());
+            let position = grid.origin() + grid.size() * share;
+            let cell = grid.cell_inside(position);
+            assert_eq!(cell, grid.cell_of(position));
+            let distance = position - grid.centre(cell);
+            assert!(distance.abs().cmple(grid.side() * (0.5 + 1e-8)).all());
+        }
+        for k in 0..70_u32 {
+            let face = DVec2::new(-0.7, 3.0 + 0.1 * f64::from(k));
+            assert_eq!(grid.cell_inside(face), 11 * k);
+        }
+        let end = DVec2::new(0.4_f64.next_down(), 10.0_f64.next_down());
+        assert_eq!(grid.cell_inside(end), 11 * 70 - 1);
+        assert_eq!(grid.cell_of(DVec2::new(-1e300, 1e300)), 11 * 69);
     }
 
     #[test]

@@ -33,3 +33,33 @@ impl RelativeSpeeds {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Phase, Streams};
+    use glam::DVec3;
+
+    #[test]
+    fn bound_and_sum_are_those_of_all_pairs_in_every_frame() {
+        let mut random = Streams::new(6).at(0, Phase::InitialVelocities).stream(0);
+        for grains in 1..20 {
+            let own: Vec<DVec3> = (0..grains).map(|_| DVec3::from_fn(|_| random.gaussian())).collect();
+            for frame in [0.0, 1e6] {
+                let velocities: Vec<DVec3> = own.iter().map(|&v| v + DVec3::splat(frame)).collect();
+                let pairs = || {
+                    velocities
+                        .iter()
+                        .enumerate()
+                        .flat_map(|(i, &a)| velocities[i..].iter().map(move |&b| a - b))
+                };
+                let speeds = RelativeSpeeds::of(&velocities);
+                let sum: f64 = pairs().map(DVec3::length_squared).sum();
+                assert!((speeds.sum_over_pairs - sum).abs() <= 1e-12 * sum);
+                assert!(pairs().all(|relative| relative.length_squared() <= speeds.largest_square));
+            }
+        }
+        let two = [DVec3::X, DVec3::Y];
+        assert_eq!(RelativeSpeeds::of(&two).largest_square, 2.0);
+    }
+}
