@@ -18,7 +18,7 @@
 //!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
 //! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
-//! ([`scenario`], [`simulation`], [`run`], [`report`]) and the command line ([`cli`]).
+//! ([`scenario`], [`simulation`], [`run`], [`comparison`], [`report`]) and the command line ([`cli`]).
 
 pub mod random;
 pub mod space;
@@ -33,6 +33,7 @@ pub mod engine;
 pub mod observe;
 pub mod record;
 
+pub mod comparison;
 pub mod report;
 pub mod run;
 pub mod scenario;

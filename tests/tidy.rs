@@ -13,7 +13,7 @@ const FLOORS: [(&str, &[&str]); 7] = [
     ("laws", &["law"]),
     ("engines", &["engine"]),
     ("observation", &["observe", "record"]),
-    ("runs", &["report", "run", "scenario", "simulation", "stopwatch"]),
+    ("runs", &["comparison", "report", "run", "scenario", "simulation", "stopwatch"]),
     ("command line", &["cli"]),
 ];
 /// Floors up to this one do no input or output, read no clock and know no serialisation.

@@ -73,6 +73,11 @@ pub trait Measure<V: Vector>: Send {
     /// The name that scenarios use, in kebab case.
     fn name(&self) -> &'static str;
 
+    /// Whether it costs so much that it is taken only where a scenario names it.
+    fn is_costly(&self) -> bool {
+        false
+    }
+
     /// When it wants to be shown the gas by [`Measure::sample`].
     fn cadence(&self) -> Cadence {
         Cadence::Recordings

@@ -44,8 +44,17 @@ pub const NAMES: [&str; 12] = [
     "centre-of-mass",
 ];
 
+/// The measures that apply to `setting` and are cheap or among those `named`, always in the same order.
+pub fn measures<V: Vector>(setting: &Setting<V>, named: Option<&[String]>) -> Vec<Box<dyn Measure<V>>> {
+    let is_named = |name: &str| named.is_some_and(|names| names.iter().any(|n| n == name));
+    applying(setting)
+        .into_iter()
+        .filter(|measure| !measure.is_costly() || is_named(measure.name()))
+        .collect()
+}
+
 /// All measures that apply to `setting`, always in the same order.
-pub fn measures<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
+fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
     let applying: [Option<Box<dyn Measure<V>>>; 12] = [
         Some(Box::new(energy::Energy::new(setting))),
         Some(Box::new(density_profile::DensityProfile::new(setting))),
@@ -75,7 +84,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     fn names<V: Vector>(bed: &Bed<V>) -> Vec<&'static str> {
-        let names: Vec<&str> = measures(&bed.setting).iter().map(|measure| measure.name()).collect();
+        let names: Vec<&str> = applying(&bed.setting).iter().map(|measure| measure.name()).collect();
         let places: Vec<usize> =
             names.iter().map(|name| NAMES.iter().position(|n| n == name).unwrap()).collect();
         assert!(places.is_sorted());
@@ -122,7 +131,7 @@ mod tests {
         bed.setting.gravity = DVec2::new(0.5, -1.0);
         let states = bed.random_states(5, 30);
         let mut seen = std::collections::BTreeSet::new();
-        for mut measure in measures(&bed.setting) {
+        for mut measure in applying(&bed.setting) {
             for column in measure.columns() {
                 assert!(seen.insert(format!("column {}", column.name)), "{}", column.name);
             }

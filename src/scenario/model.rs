@@ -179,7 +179,7 @@ pub struct RecordPlan {
     pub spacing: Spacing,
     /// Points of a frame: at most this many, `None` for all.
     pub points: Option<u32>,
-    /// Names of the measures whose series and profiles are stored; `None` for all that apply.
+    /// Names of the measures whose series and profiles are stored; `None` for all that apply and are cheap.
     pub measures: Option<Vec<String>>,
     /// Full-precision states during the run, beside the one at the end.
     pub states: u32,

@@ -93,7 +93,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 
     fn assemble(scenario: &'s Scenario<V>, gas: Gas<V>, beginning: Beginning<V>) -> Self {
-        let measures = measures(&scenario.setting());
+        let measures = measures(&scenario.setting(), scenario.record.measures.as_deref());
         Simulation {
             scenario,
             gas,

@@ -1,0 +1,160 @@
+//! What a comparison has found, ready for readers: reports, tables and tests look at this and at nothing else.
+
+use crate::observe::measure::{Column, Dimension};
+use crate::record::contents::{Frame, Walls};
+use crate::statistics::Estimate;
+
+/// Several engines side by side, each with the same initial states.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Comparison {
+    /// Title of the scenario.
+    pub title: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The scenario as TOML text; that of the first log where logs are compared.
+    pub scenario_text: String,
+    /// Two or three.
+    pub dimension: usize,
+    /// Names of the units of length, mass and time.
+    pub units: [String; 3],
+    /// Version and `numerics` of the program that made the runs.
+    pub version: String,
+    /// Raised whenever a release changes bits.
+    pub numerics: u32,
+    /// The seed from which replicas draw theirs.
+    pub seed: u64,
+    /// Independent initial states, each of which went through every engine.
+    pub replicas: u32,
+    /// Where standard errors come from, and what else a reader must know, a sentence each.
+    pub remarks: Vec<String>,
+    /// The engines, in the order asked for.
+    pub contestants: Vec<Contestant>,
+    /// Place in `contestants` of the one that the others are subtracted from: event-driven where it takes part.
+    pub reference: usize,
+    /// Quantities against time, or against collisions per particle.
+    pub series: Vec<Compared>,
+    /// Profiles, spectra and distributions, each at one time.
+    pub profiles: Vec<Compared>,
+    /// Figures of the summaries.
+    pub figures: Vec<ComparedFigure>,
+}
+
+/// One engine and its runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contestant {
+    /// What it is called in tables and legends: the engine's name, or a log's name where engines are not enough.
+    pub label: String,
+    /// Name of the engine.
+    pub engine: String,
+    /// The folders (or logs) of its runs, one per replica that came to an end, beside the comparison.
+    pub folders: Vec<String>,
+    /// Why a run did not come to its end, a sentence for each that did not; its others are still shown.
+    pub failures: Vec<String>,
+    /// What it costs; `None` where runs shared the machine, or the logs do not say.
+    pub cost: Option<Cost>,
+    /// The box and its walls.
+    pub walls: Option<Walls>,
+    /// Diameter of a grain [length].
+    pub diameter: f64,
+    /// Pictures of its first replica.
+    pub frames: Vec<Frame>,
+}
+
+/// What an engine's runs cost, means over replicas.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Seconds of the whole run.
+    pub wall_seconds: f64,
+    /// Seconds of advancing the state alone.
+    pub advancing_seconds: f64,
+    /// Particle-steps per second; `None` for engines without steps.
+    pub particle_steps_per_second: Option<f64>,
+    /// Events per second; `None` for engines with steps.
+    pub events_per_second: Option<f64>,
+    /// Peak of memory [byte].
+    pub peak_memory: Option<f64>,
+}
+
+/// Curves of one quantity over one abscissa, the same points for every engine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// The measure's or column's name, in snake or kebab case as in the tables.
+    pub name: String,
+    /// What runs along x.
+    pub abscissa: Column,
+    /// What runs along y.
+    pub ordinate: Column,
+    /// When it was taken, for a profile [time]; `None` for a series, and for a profile of the whole run.
+    pub time: Option<f64>,
+    /// Where the curves are known.
+    pub places: Vec<f64>,
+    /// `[contestant]`; `None` for one that does not have it.
+    pub curves: Vec<Option<CurveOf>>,
+    /// `[contestant]` against the reference; `None` for the reference itself and where either has no curve.
+    pub differences: Vec<Option<Difference>>,
+}
+
+/// Mean over replicas at each place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurveOf {
+    /// NaN where it is not defined.
+    pub values: Vec<f64>,
+    /// Standard errors; NaN where nothing is known of them.
+    pub errors: Vec<f64>,
+}
+
+/// How two curves, or two figures, stand to each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Whether the values are shares of the reference, as for energies, or in its unit.
+    pub is_relative: bool,
+    /// This one minus the reference, at each place.
+    pub values: Vec<f64>,
+    /// Standard errors of these, with replicas paired where they begin at the same state.
+    pub errors: Vec<f64>,
+    /// The largest of |value|/error, and where it is; `None` where no error is known.
+    pub most: Option<Peak>,
+    /// Standard errors beyond which values differ: 3 for a single one, more for many places.
+    pub threshold: f64,
+    /// The first place from which on they differ.
+    pub parts_at: Option<f64>,
+    /// What came out.
+    pub verdict: Verdict,
+    /// The same in a sentence, with numbers.
+    pub sentence: String,
+}
+
+/// A difference in standard errors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Where along x.
+    pub place: f64,
+    /// |value| / error.
+    pub standard_errors: f64,
+}
+
+/// What came out of a comparison of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nowhere beyond the threshold.
+    Agrees,
+    /// Somewhere beyond it.
+    Differs,
+    /// There are no errors to judge by.
+    Unknown,
+}
+
+/// A figure of the summary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparedFigure {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Dimension,
+    /// `[contestant]`.
+    pub values: Vec<Option<Estimate>>,
+    /// `[contestant]` against the reference, each with one value.
+    pub differences: Vec<Option<Difference>>,
+    /// What theory says, where it says something, with its source.
+    pub theory: Option<(f64, String)>,
+}
