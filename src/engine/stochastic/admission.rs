@@ -5,10 +5,9 @@
 //! accepted ones are always a prefix of that ranking and only ever become fewer, so every
 //! order of work reaches the same set: the result depends on no order of cells or threads.
 
-use rayon::prelude::*;
-
+use super::contests::Wanted;
 use crate::matter::grid::Grid;
-use crate::matter::sort::{CountingSort, FEWEST_GRAINS, REMOVED};
+use crate::matter::sort::{CountingSort, REMOVED};
 use crate::random::PhaseStreams;
 use crate::space::Vector;
 
@@ -17,8 +16,8 @@ pub(crate) struct Moves<'a, V: Vector> {
     pub(crate) grid: &'a Grid<V>,
     /// Grains that make a cell full.
     pub(crate) capacity: u32,
-    /// `[row]`: positions before the move [length].
-    pub(crate) positions: &'a [V],
+    /// Where the rows of each cell begin before the move, `[cell + 1]`.
+    pub(crate) offsets: &'a [u32],
     /// `[row]`.
     pub(crate) ids: &'a [u32],
     /// `[row]`: the cell each grain goes to.
@@ -29,7 +28,7 @@ pub(crate) struct Moves<'a, V: Vector> {
 }
 
 /// A grain whose move is rejected: it stays where it was.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rejected {
     pub(crate) row: u32,
     /// The cell it is in.
@@ -38,106 +37,59 @@ pub(crate) struct Rejected {
     wanted: u32,
 }
 
-/// A mover that wants to enter a contested cell; the lower rank has precedence.
+/// A rejected mover that bids for a face cell; the lower rank has precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Bid {
     cell: u32,
     rank: u64,
     id: u32,
     row: u32,
-    source: u32,
-}
-
-/// Arrivals at contested cells.
-#[derive(Debug, Default)]
-struct Contests {
-    /// By cell, and in it by rank.
-    bids: Vec<Bid>,
-    /// `[bid]`: of the first bid at a cell, how many of the last ones there have lost.
-    lost: Vec<u32>,
-    /// Whether all movers have bid; otherwise only those to the cells that were above capacity first.
-    complete: bool,
 }
 
 impl<V: Vector> Moves<'_, V> {
-    /// The cell that the grain in `row` comes from.
-    fn source(&self, row: u32) -> u32 {
-        self.grid.cell_of(self.positions[row as usize])
-    }
-
     /// The thesis' rule: a cell is open to any number when below capacity before the moves.
     pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
-        let mut occupancy = vec![0_u32; self.grid.number_of_cells()];
-        self.positions.iter().for_each(|&position| occupancy[self.grid.cell_of(position) as usize] += 1);
-        let mut rejected = Vec::new();
-        for row in 0..self.targets.len() as u32 {
+        let occupancy = |cell: u32| self.offsets[cell as usize + 1] - self.offsets[cell as usize];
+        let refused = |row: u32| {
             let wanted = self.targets[row as usize];
-            let refused = wanted != REMOVED && occupancy[wanted as usize] >= self.capacity;
-            let source = self.source(row);
-            if refused && wanted != source {
-                self.send(row, source);
-                rejected.push(Rejected { row, source, wanted });
-            }
-        }
+            wanted != REMOVED && occupancy(wanted) >= self.capacity
+        };
+        let rows: Vec<u32> = (0..self.targets.len() as u32).filter(|&row| refused(row)).collect();
+        let mut rejected = self.turned_back(rows.into_iter());
+        rejected.retain(|rejected| rejected.wanted != rejected.source);
         rejected
     }
 
     /// The strict rule: the least set of rejections that leaves no cell above its capacity. In rising order of rows.
     pub(crate) fn reject_surplus(&mut self) -> Vec<Rejected> {
-        let mut above = self.counts.cells_above(self.capacity);
+        let above = self.counts.cells_above(self.capacity);
         if above.is_empty() {
             return Vec::new();
         }
-        let mut contests = Contests::new(self.bids(Some(&above)), false);
-        let mut rejected = Vec::new();
-        while let Some(cell) = above.pop() {
-            let surplus = self.counts.total(cell).saturating_sub(self.capacity);
-            for _ in 0..surplus {
-                let Some(Bid { row, source, .. }) = contests.reject_last(cell) else {
-                    if contests.complete {
-                        break;
-                    }
-                    contests = Contests::new(self.bids(None), true);
-                    above.push(cell);
-                    break;
-                };
-                rejected.push(Rejected { row, source, wanted: cell });
-                self.send(row, source);
-                if self.counts.total(source) > self.capacity {
-                    above.push(source);
-                }
-            }
-        }
-        rejected.sort_unstable();
-        rejected
+        let Moves { capacity, offsets, ids, ranks, .. } = *self;
+        let wanted = Wanted { offsets, targets: self.targets, ids, capacity, ranks };
+        let losers = wanted.losers(self.counts, &above);
+        self.turned_back(losers.iter())
     }
 
-    /// The bids of grains that would change cells; only at `cells`, where these are given.
-    fn bids(&self, cells: Option<&[u32]>) -> Vec<Bid> {
-        let mut contested = vec![0_u64; cells.map_or(0, |_| self.grid.number_of_cells().div_ceil(64))];
-        for &cell in cells.into_iter().flatten() {
-            contested[cell as usize / 64] |= 1 << (cell % 64);
-        }
-        let is_contested =
-            |cell: u32| cells.is_none() || contested[cell as usize / 64] >> (cell % 64) & 1 == 1;
-        let bid = |(row, &cell): (usize, &u32)| {
-            if cell == REMOVED || !is_contested(cell) {
-                return None;
-            }
-            let source = self.source(row as u32);
-            (cell != source).then(|| self.bid(row as u32, source, cell))
-        };
-        let targets = &*self.targets;
-        if targets.len() < FEWEST_GRAINS {
-            targets.iter().enumerate().filter_map(bid).collect()
-        } else {
-            targets.par_iter().enumerate().with_min_len(FEWEST_GRAINS).filter_map(bid).collect()
-        }
+    /// The moves of these rows, in rising order, are rejected: grains stay in their cells.
+    fn turned_back(&mut self, rows: impl Iterator<Item = u32>) -> Vec<Rejected> {
+        let mut source = 0;
+        let rejected = rows.map(|row| {
+            source = self.cell_of_row(row, source);
+            let wanted = self.targets[row as usize];
+            self.send(row, source);
+            Rejected { row, source, wanted }
+        });
+        rejected.collect()
     }
 
-    fn bid(&self, row: u32, source: u32, cell: u32) -> Bid {
-        let id = self.ids[row as usize];
-        Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row, source }
+    /// The cell that holds `row`, which is `from` or comes after it.
+    fn cell_of_row(&self, row: u32, from: u32) -> u32 {
+        let after = &self.offsets[from as usize + 1..];
+        // Most often it is near; otherwise there is a stretch of empty cells between.
+        let near = after.iter().take(8).position(|&end| end > row);
+        from + near.unwrap_or_else(|| after.partition_point(|&end| end <= row)) as u32
     }
 
     /// Sends a grain elsewhere.
@@ -150,42 +102,24 @@ impl<V: Vector> Moves<'_, V> {
     /// face neighbour has room; winners by the same ranking. Returns their rows, in rising order; they
     /// are no longer among the rejected.
     pub(crate) fn slide(&mut self, axis: usize, rejected: &mut Vec<Rejected>) -> Vec<u32> {
-        let mut bids: Vec<Bid> = rejected
-            .iter()
-            .filter_map(|&Rejected { row, source, wanted }| {
-                Some(self.bid(row, source, face_cell(self.grid, axis, source, wanted)?))
-            })
-            .collect();
+        let room = |cell: u32| self.capacity.saturating_sub(self.counts.total(cell)) as usize;
+        let bid = |&Rejected { row, source, wanted }: &Rejected| {
+            let cell = face_cell(self.grid, axis, source, wanted).filter(|&cell| room(cell) > 0)?;
+            let id = self.ids[row as usize];
+            Some(Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row })
+        };
+        let mut bids: Vec<Bid> = rejected.iter().filter_map(bid).collect();
         bids.sort_unstable();
-        let mut winners = Vec::new();
+        let mut winners: Vec<(u32, u32)> = Vec::new();
         for contest in bids.chunk_by(|a, b| a.cell == b.cell) {
-            let room = self.capacity.saturating_sub(self.counts.total(contest[0].cell)) as usize;
-            winners.extend_from_slice(&contest[..room.min(contest.len())]);
+            let admitted = contest.iter().take(room(contest[0].cell));
+            winners.extend(admitted.map(|bid| (bid.row, bid.cell)));
         }
-        for winner in &winners {
-            self.send(winner.row, winner.cell);
-        }
-        let mut rows: Vec<u32> = winners.iter().map(|winner| winner.row).collect();
-        rows.sort_unstable();
-        rejected.retain(|rejected| rows.binary_search(&rejected.row).is_err());
-        rows
-    }
-}
-
-impl Contests {
-    fn new(mut bids: Vec<Bid>, complete: bool) -> Self {
-        bids.sort_unstable();
-        let lost = vec![0; bids.len()];
-        Contests { bids, lost, complete }
-    }
-
-    /// The last of the arrivals at `cell` that are still accepted loses; `None` where there is none, or nobody has bid.
-    fn reject_last(&mut self, cell: u32) -> Option<Bid> {
-        let first = self.bids.partition_point(|bid| bid.cell < cell);
-        let all = self.bids[first..].partition_point(|bid| bid.cell == cell);
-        let accepted = all.checked_sub(*self.lost.get(first)? as usize + 1)?;
-        self.lost[first] += 1;
-        Some(self.bids[first + accepted])
+        winners.sort_unstable();
+        winners.iter().for_each(|&(row, cell)| self.send(row, cell));
+        let mut others = winners.iter().peekable();
+        rejected.retain(|rejected| others.next_if(|(row, _)| *row == rejected.row).is_none());
+        winners.into_iter().map(|(row, _)| row).collect()
     }
 }
 
@@ -215,14 +149,15 @@ mod tests {
     fn rejected(cells: u32, capacity: u32, sources: &[u32], targets: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let size = DVec2::new(f64::from(cells), 1.0);
         let grid = Grid::new(DVec2::ZERO, size, &[cells, 1], &[false, false]);
-        let positions: Vec<DVec2> = sources.iter().map(|&cell| grid.centre(cell)).collect();
+        let offsets: Vec<u32> =
+            (0..=cells).map(|cell| sources.partition_point(|&source| source < cell) as u32).collect();
         let ids: Vec<u32> = (0..sources.len() as u32).collect();
         let (mut targets, mut counts) = (targets.to_vec(), CountingSort::default());
         counts.count(&targets, cells as usize);
         let mut moves = Moves {
             grid: &grid,
             capacity,
-            positions: &positions,
+            offsets: &offsets,
             ids: &ids,
             targets: &mut targets,
             counts: &mut counts,

@@ -199,7 +199,7 @@ impl<V: Vector> ExcludedVolume<V> {
         let mut moves = Moves {
             grid: gas.grid(),
             capacity: self.capacity(gas),
-            positions: &columns.positions,
+            offsets: gas.offsets(),
             ids: &columns.ids,
             targets: &mut space.cells,
             counts: &mut space.sort,
@@ -222,6 +222,7 @@ impl<V: Vector> ExcludedVolume<V> {
             }
         }
         rejected.iter().for_each(|rejected| self.held.hold(rejected.row));
+        self.held.order();
         for row in self.held.rows() {
             if flights.is_out(self.held.held_position(&flights, columns, row as usize)) {
                 moves.send(row, REMOVED);

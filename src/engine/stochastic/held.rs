@@ -1,6 +1,7 @@
 //! Grains that may not go where they want to.
 
 use super::flight::Flights;
+use super::number_set::{NumberSet, WORD};
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
 use crate::matter::scatter::Slot;
@@ -9,9 +10,9 @@ use crate::space::Vector;
 /// The grains that stay, and those that go along one axis only.
 #[derive(Debug, Default)]
 pub(crate) struct Held {
-    /// One bit for every row; empty where all grains go.
-    bits: Vec<u64>,
-    /// Rows that go along one axis, and that axis; in rising order.
+    /// Their rows; without memory where all grains go.
+    held: NumberSet,
+    /// Rows that go along one axis, and that axis; in rising order once all are known.
     slides: Vec<(u32, usize)>,
     rows: usize,
 }
@@ -19,31 +20,33 @@ pub(crate) struct Held {
 impl Held {
     /// All of `rows` may go.
     pub(crate) fn clear(&mut self, rows: usize) {
-        self.bits.clear();
+        self.held = NumberSet::default();
         self.slides.clear();
         self.rows = rows;
     }
 
     /// The grain in `row` stays where it is.
     pub(crate) fn hold(&mut self, row: u32) {
-        self.bits.resize(self.rows.div_ceil(64), 0);
-        self.bits[row as usize / 64] |= 1 << (row % 64);
+        if self.held.has_no_room() {
+            self.held = NumberSet::of(vec![0; self.rows.div_ceil(WORD as usize)]);
+        }
+        self.held.insert(row);
     }
 
     /// The grain in `row` makes only the part of its move along `axis`.
     pub(crate) fn slide(&mut self, row: u32, axis: usize) {
         self.hold(row);
-        let place = self.slides.partition_point(|&(other, _)| other < row);
-        self.slides.insert(place, (row, axis));
+        self.slides.push((row, axis));
+    }
+
+    /// All have been told: from now on they can be asked for.
+    pub(crate) fn order(&mut self) {
+        self.slides.sort_unstable();
     }
 
     /// The rows that do not go where they want to.
-    pub(crate) fn rows(&self) -> Vec<u32> {
-        let word = |(place, &word): (usize, &u64)| {
-            let set = (0..64).filter(move |bit| word >> bit & 1 == 1);
-            set.map(move |bit| place as u32 * 64 + bit)
-        };
-        self.bits.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(word).collect()
+    pub(crate) fn rows(&self) -> impl Iterator<Item = u32> {
+        self.held.iter()
     }
 
     /// Brings the grain of `row` to where it gets.
@@ -65,7 +68,7 @@ impl Held {
 
     #[inline(always)]
     fn holds(&self, row: usize) -> bool {
-        !self.bits.is_empty() && self.bits[row / 64] >> (row % 64) & 1 == 1
+        !self.held.has_no_room() && self.held.contains(row as u32)
     }
 
     /// The rare cases. They write for themselves: a result handed back would go through memory, for all grains.
