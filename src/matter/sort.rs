@@ -51,11 +51,12 @@ impl Counter<'_> {
 }
 
 /// How many parts are worth while: one per thread, but never so many that their counts outweigh the grains.
-pub fn number_of_parts(grains: usize, number_of_cells: usize) -> usize {
+/// Cells that no grain goes near cost nothing.
+pub fn number_of_parts(grains: usize, occupied_cells: usize) -> usize {
     if grains < FEWEST_GRAINS {
         return 1;
     }
-    let affordable = (2 * grains / number_of_cells.max(1)).max(1);
+    let affordable = (2 * grains / occupied_cells.max(1)).max(1);
     rayon::current_num_threads().min(affordable)
 }
 

@@ -47,10 +47,7 @@ pub const NAMES: [&str; 12] = [
 /// The measures that apply to `setting` and are cheap or among those `named`, always in the same order.
 pub fn measures<V: Vector>(setting: &Setting<V>, named: Option<&[String]>) -> Vec<Box<dyn Measure<V>>> {
     let is_named = |name: &str| named.is_some_and(|names| names.iter().any(|n| n == name));
-    applying(setting)
-        .into_iter()
-        .filter(|measure| !measure.is_costly() || is_named(measure.name()))
-        .collect()
+    applying(setting).into_iter().filter(|measure| !measure.is_costly() || is_named(measure.name())).collect()
 }
 
 /// All measures that apply to `setting`, always in the same order.

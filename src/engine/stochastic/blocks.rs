@@ -44,7 +44,7 @@ pub(crate) fn parts<'a, V: Vector>(
     let spans = starts.map(|first| first as u32..(first + CELLS_PER_BLOCK).min(cells) as u32);
     let mut blocks = cut(spans, offsets, columns, targets);
     blocks.retain(|block| !block.ids.is_empty());
-    let parts = number_of_parts(grains, cells);
+    let parts = number_of_parts(grains, blocks.len() * CELLS_PER_BLOCK);
     let mut blocks = blocks.into_iter().peekable();
     (1..=parts)
         .map(|part| {

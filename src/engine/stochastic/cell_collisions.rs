@@ -3,6 +3,7 @@
 //! Cells are treated like grains with the mass and mean velocity of what they hold. The energy
 //! that an inelastic cell collision takes returns as heat, so that momentum and energy are kept.
 
+use super::number_set::{NumberSet, WORD};
 use super::parallel;
 use crate::engine::report::Counts;
 use crate::matter::gas::Gas;
@@ -26,6 +27,8 @@ struct CellField<V> {
 /// What a collision does to one of its two cells.
 #[derive(Clone, Copy, Debug)]
 struct Outcome<V> {
+    /// Its place among the active cells.
+    place: u32,
     cell: u32,
     /// Change of the mean velocity [length/time].
     kick: V,
@@ -44,12 +47,12 @@ enum Heat {
 /// The cell–cell collisions of an engine, with memory kept from step to step.
 #[derive(Debug, Default)]
 pub(crate) struct CellCollisions<V: Vector> {
-    /// `[cell]`; valid for active cells only.
-    fields: Vec<CellField<V>>,
-    /// `[cell]`: which neighbour a white cell wants to collide with; nobody for inactive cells.
-    choices: Vec<u32>,
     /// Cells that are full or beside a full one, and not empty, in rising order.
     active: Vec<Active>,
+    /// `[active cell]`.
+    fields: Vec<CellField<V>>,
+    /// `[active cell]`: which other one a white cell wants to collide with.
+    choices: Vec<u32>,
 }
 
 /// A cell that may take part in collisions. What stays the same from sweep to sweep is looked up once.
@@ -58,7 +61,7 @@ struct Active {
     cell: u32,
     /// Of the two colours of a chessboard.
     colour: u32,
-    /// `[2 axis + upwards]`: the neighbour that it may collide with, or nobody.
+    /// `[2 axis + upwards]`: the neighbour that it may collide with, as its place among the active cells, or nobody.
     partners: [u32; 6],
 }
 
@@ -106,56 +109,45 @@ impl<V: Vector> CellCollisions<V> {
 
     /// Lists the cells that could take part: not empty, and full or beside a full one.
     fn find_active(&mut self, gas: &Gas<V>, capacity: u32) {
-        for active in self.active.drain(..) {
-            self.choices[active.cell as usize] = NOBODY;
-        }
+        self.active.clear();
         let number_of_cells = gas.grid().number_of_cells();
         let full = |cell: u32| gas.occupancy(cell) >= capacity;
-        let full_cells: Vec<u32> = occupied_spans(gas).flatten().filter(|&cell| full(cell)).collect();
-        if full_cells.is_empty() {
+        let mut full_cells = occupied_spans(gas).flatten().filter(|&cell| full(cell)).peekable();
+        if full_cells.peek().is_none() {
             return;
         }
-        let mut cells = Vec::with_capacity(3 * full_cells.len());
-        for &cell in &full_cells {
-            cells.push(cell);
+        let mut cells = NumberSet::of(vec![0; number_of_cells.div_ceil(WORD as usize)]);
+        for cell in full_cells {
+            cells.insert(cell);
             let beside = neighbours(gas.grid(), cell).map(|(_, other)| other);
-            cells.extend(beside.filter(|&other| gas.occupancy(other) > 0 && !full(other)));
+            beside.filter(|&other| gas.occupancy(other) > 0).for_each(|other| cells.insert(other));
         }
-        cells.sort_unstable();
-        cells.dedup();
-        self.active.extend(cells.into_iter().map(|cell| Active::new(gas, cell, full)));
-        self.fields.resize(number_of_cells, CellField::default());
-        self.choices.resize(number_of_cells, NOBODY);
+        cells.number();
+        self.active.extend(cells.iter().map(|cell| Active::new(gas, cell, full, &cells)));
     }
 
     fn measure(&mut self, gas: &Gas<V>) {
-        let measured = parallel::map_slice(gas.len(), &self.active, |active| {
+        self.fields = parallel::map_slice(gas.len(), &self.active, |active| {
             CellField::of(&gas.velocities()[gas.rows(active.cell)])
         });
-        for (active, field) in self.active.iter().zip(measured) {
-            self.fields[active.cell as usize] = field;
-        }
     }
 
     /// Each white cell chooses the neighbour it approaches fastest; ties go to the lower cell number.
     fn choose(&mut self, gas: &Gas<V>, parity: u32) {
         let fields = &self.fields;
-        let choice = |active: &Active| {
+        let choice = |(place, active): (usize, &Active)| {
             let mut best = (NOBODY, 0.0);
             for (axis, upwards, other) in active.partners() {
-                let approach = approach_speed(fields, active.cell, other, axis, upwards);
+                let approach = approach_speed(fields, place as u32, other, axis, upwards);
                 if approach > best.1 || (approach == best.1 && approach > 0.0 && other < best.0) {
                     best = (other, approach);
                 }
             }
             best.0
         };
-        let choices = parallel::map_slice(gas.len(), &self.active, |active| {
-            if active.is_white(parity) { choice(active) } else { NOBODY }
+        self.choices = parallel::map_numbered(gas.len(), &self.active, |(place, active)| {
+            if active.is_white(parity) { choice((place, active)) } else { NOBODY }
         });
-        for (active, choice) in self.active.iter().zip(choices) {
-            self.choices[active.cell as usize] = choice;
-        }
     }
 
     /// Each black cell collides with the fastest of its suitors: one collision per cell at most.
@@ -168,8 +160,9 @@ impl<V: Vector> CellCollisions<V> {
         counts: &mut Counts<V>,
     ) -> Vec<Outcome<V>> {
         let grid = gas.grid();
-        let pairs = parallel::map_slice(gas.len(), &self.active, |active| {
-            let pair = if active.is_white(parity) { None } else { self.accepted_suitor(active) };
+        let pairs = parallel::map_numbered(gas.len(), &self.active, |(place, active)| {
+            let pair =
+                if active.is_white(parity) { None } else { self.accepted_suitor(place as u32, active) };
             pair.map(|pair| self.outcome(rules, grid, pair, random))
         });
         let mut outcomes = Vec::with_capacity(self.active.len());
@@ -182,9 +175,8 @@ impl<V: Vector> CellCollisions<V> {
         outcomes
     }
 
-    /// The pair (black, white) with the axis and direction from black to white.
-    fn accepted_suitor(&self, active: &Active) -> Option<(u32, u32, usize, bool)> {
-        let black = active.cell;
+    /// The pair (black, white), as places, with the axis and direction from black to white.
+    fn accepted_suitor(&self, black: u32, active: &Active) -> Option<(u32, u32, usize, bool)> {
         let mut best: Option<(u32, u32, usize, bool)> = None;
         let mut fastest = 0.0;
         for (axis, upwards, white) in active.partners() {
@@ -213,7 +205,8 @@ impl<V: Vector> CellCollisions<V> {
     ) -> (Outcome<V>, Outcome<V>, f64) {
         let (a, b) = (self.fields[black as usize], self.fields[white as usize]);
         let relative = a.velocity - b.velocity;
-        let elastic = V::exchange(relative, &mut random.stream(u64::from(black)));
+        let [black_cell, white_cell] = [black, white].map(|place| self.active[place as usize].cell);
+        let elastic = V::exchange(relative, &mut random.stream(u64::from(black_cell)));
         let (n_a, n_b) = (f64::from(a.grains), f64::from(b.grains));
         let reduced = n_a * n_b / (n_a + n_b);
         let impulse = elastic * ((1.0 + rules.restitution) * reduced);
@@ -223,8 +216,8 @@ impl<V: Vector> CellCollisions<V> {
         let separation = if upwards { -grid.side()[axis] } else { grid.side()[axis] };
         let carried = rules.mass * impulse[axis] * separation;
         (
-            Outcome { cell: black, kick: impulse * (1.0 / n_a), heat: heat_a },
-            Outcome { cell: white, kick: impulse * (-1.0 / n_b), heat: heat_b },
+            Outcome { place: black, cell: black_cell, kick: impulse * (1.0 / n_a), heat: heat_a },
+            Outcome { place: white, cell: white_cell, kick: impulse * (-1.0 / n_b), heat: heat_b },
             carried,
         )
     }
@@ -246,23 +239,23 @@ impl<V: Vector> CellCollisions<V> {
         }
         let fields = &self.fields;
         let changed = parallel::map(grains, work, |(outcome, rows)| {
-            let field = fields[outcome.cell as usize];
+            let field = fields[outcome.place as usize];
             outcome.apply(field.velocity, rows, random);
-            (outcome.cell, CellField::of(rows))
+            (outcome.place, CellField::of(rows))
         });
-        for (cell, field) in changed {
-            self.fields[cell as usize] = field;
+        for (place, field) in changed {
+            self.fields[place as usize] = field;
         }
     }
 }
 
 impl Active {
-    fn new<V: Vector>(gas: &Gas<V>, cell: u32, full: impl Fn(u32) -> bool) -> Self {
+    fn new<V: Vector>(gas: &Gas<V>, cell: u32, full: impl Fn(u32) -> bool, active: &NumberSet) -> Self {
         let [i, j, k] = gas.grid().coordinates(cell);
         let mut partners = [NOBODY; 6];
         for (place, other) in neighbours(gas.grid(), cell) {
             if gas.occupancy(other) > 0 && (full(cell) || full(other)) {
-                partners[place] = other;
+                partners[place] = active.place(other).expect("a full cell and those beside it are active");
             }
         }
         Active { cell, colour: (i + j + k) & 1, partners }
@@ -272,7 +265,7 @@ impl Active {
         (self.colour + parity) & 1 == 0
     }
 
-    /// Axis, whether upwards, and the cell.
+    /// Axis, whether upwards, and the other's place.
     fn partners(&self) -> impl Iterator<Item = (usize, bool, u32)> + '_ {
         let places = self.partners.iter().enumerate().filter(|(_, other)| **other != NOBODY);
         places.map(|(place, &other)| (place / 2, place % 2 == 1, other))

@@ -8,7 +8,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::number_set::{NumberSet, WORD};
-use crate::matter::sort::{CountingSort, FEWEST_GRAINS, REMOVED, number_of_parts};
+use crate::matter::sort::{CountingSort, FEWEST_GRAINS, REMOVED};
 use crate::random::PhaseStreams;
 
 /// The moves that grains want to make.
@@ -96,7 +96,7 @@ impl Wanted<'_> {
     fn spans(&self) -> Vec<Range<u32>> {
         let cells = self.offsets.len() - 1;
         let grains = self.targets.len();
-        let parts = number_of_parts(grains, cells);
+        let parts = if grains < FEWEST_GRAINS { 1 } else { rayon::current_num_threads() };
         let end = |part: usize| {
             let cell = self.offsets.partition_point(|&offset| (offset as usize) < grains * part / parts);
             if part == parts { cells as u32 } else { cell as u32 / WORD * WORD }

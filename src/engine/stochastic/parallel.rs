@@ -44,6 +44,19 @@ pub(crate) fn map_slice<T: Sync, R: Send>(
     }
 }
 
+/// The same, with the place of each item.
+pub(crate) fn map_numbered<T: Sync, R: Send>(
+    grains: usize,
+    items: &[T],
+    work: impl Fn((usize, &T)) -> R + Sync + Send,
+) -> Vec<R> {
+    if grains < FEWEST_GRAINS {
+        items.iter().enumerate().map(work).collect()
+    } else {
+        items.par_iter().enumerate().with_min_len(64).map(work).collect()
+    }
+}
+
 /// Copies a column.
 pub(crate) fn copy<T: Copy + Send + Sync>(from: &[T], to: &mut [T]) {
     if from.len() < FEWEST_GRAINS {
