@@ -200,6 +200,7 @@ impl<V: Vector> ExcludedVolume<V> {
             grid: gas.grid(),
             capacity: self.capacity(gas),
             offsets: gas.offsets(),
+            positions: &columns.positions,
             ids: &columns.ids,
             targets: &mut space.cells,
             counts: &mut space.sort,
