@@ -315,7 +315,7 @@ mod tests {
         let offsets: Vec<u32> = (0..=cells).map(|cell| cell * per_cell).collect();
         let grid = Grid::new(DVec2::ZERO, DVec2::new(f64::from(cells), 1.0), &[cells, 1], &[false, false]);
         // Some have been displaced into the next cell.
-        let home = |row: u32| (row / per_cell + u32::from(row % 9 == 0)).min(cells - 1);
+        let home = |row: u32| (row / per_cell + u32::from(row.is_multiple_of(9))).min(cells - 1);
         let positions: Vec<DVec2> = (0..cells * per_cell).map(|row| grid.centre(home(row))).collect();
         let targets: Vec<u32> = (0..cells * per_cell)
             .map(|row| (row / per_cell + (3.0 * random.uniform()) as u32).min(cells - 1))
