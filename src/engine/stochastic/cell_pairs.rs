@@ -13,6 +13,7 @@ use super::laws::Laws;
 use super::relative_speeds::RelativeSpeeds;
 use super::tally::Tally;
 use crate::law::restitution::Restitution;
+use crate::matter::fetch::fetch_all;
 use crate::matter::grid::Grid;
 use crate::random::{Phase, PhaseStreams, Stream};
 use crate::space::Vector;
@@ -151,11 +152,16 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
             candidates: Vec::with_capacity(block.ids.len()),
             cells: Vec::with_capacity(block.cells.len()),
         };
+        // Displacements will go to positions in no order.
+        let fetches_positions = !matches!(self.displacement, Displacement::None);
         for cell in block.cells.clone() {
             let rows = block.rows_of(cell, offsets);
             let grains = rows.len() as u32;
             if grains < 2 {
                 continue;
+            }
+            if fetches_positions {
+                fetch_all(&block.positions[rows.clone()]);
             }
             let speeds = RelativeSpeeds::of(&block.velocities[rows.clone()]);
             if !speeds.sum_over_pairs.is_finite() {

@@ -225,7 +225,7 @@ impl<V: Vector> ExcludedVolume<V> {
         rejected.iter().for_each(|rejected| self.held.hold(rejected.row));
         self.held.order();
         for row in self.held.rows() {
-            if flights.is_out(self.held.held_position(&flights, columns, row as usize)) {
+            if flights.is_out(self.held.held_position(&flights, columns.rows(), row as usize)) {
                 moves.send(row, REMOVED);
                 tally.counts.removed += 1;
             }
@@ -242,7 +242,7 @@ impl<V: Vector> ExcludedVolume<V> {
     ) {
         let grid = gas.grid().clone();
         let flights = Flights::new(laws, &grid, step);
-        gas.sort_counted(space, |columns, row, slot| self.held.put(&flights, columns, row, slot));
+        gas.sort_counted(space, |rows, row, slot| self.held.put(&flights, rows, row, slot));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::flight::Flights;
 use super::number_set::{NumberSet, WORD};
 use crate::law::restitution::Restitution;
-use crate::matter::columns::Columns;
+use crate::matter::columns::Rows;
 use crate::matter::scatter::Slot;
 use crate::space::Vector;
 
@@ -54,7 +54,7 @@ impl Held {
     pub(crate) fn put<V: Vector, R: Restitution>(
         &self,
         flights: &Flights<'_, V, R>,
-        columns: &Columns<V>,
+        columns: Rows<'_, V>,
         row: usize,
         slot: Slot<'_, V>,
     ) {
@@ -77,7 +77,7 @@ impl Held {
     fn put_with_care<V: Vector, R: Restitution>(
         &self,
         flights: &Flights<'_, V, R>,
-        columns: &Columns<V>,
+        columns: Rows<'_, V>,
         row: usize,
         slot: Slot<'_, V>,
     ) {
@@ -94,7 +94,7 @@ impl Held {
     pub(crate) fn held_position<V: Vector, R: Restitution>(
         &self,
         flights: &Flights<'_, V, R>,
-        columns: &Columns<V>,
+        columns: Rows<'_, V>,
         row: usize,
     ) -> V {
         let mut position = columns.positions[row];
