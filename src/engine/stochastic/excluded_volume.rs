@@ -6,7 +6,7 @@ use super::Step;
 use super::admission::{Moves, Rejected};
 use super::blocks::{Block, Part, parts, rows_of};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
-use super::cell_pairs::{Displaced, PairCollisions};
+use super::cell_pairs::PairCollisions;
 use super::coloured_pass::{ColouredPass, Contested};
 use super::flight::Flights;
 use super::held::Held;
@@ -14,7 +14,7 @@ use super::laws::{Laws, Room};
 use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
-use super::wishes::{Places, Wishes};
+use super::wishes::{Places, Wish, Wishes};
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
 use crate::matter::gas::{Gas, SortSpace};
@@ -29,7 +29,7 @@ pub(crate) struct ExcludedVolume<V: Vector> {
     rules: HsmcRules,
     cell_collisions: CellCollisions<V>,
     /// `[block]`: displacements that the collisions of the step ask for.
-    wishes: Vec<Vec<Displaced<V>>>,
+    wishes: Vec<Vec<Wish<V>>>,
     /// `[cell]`: grains that would enter if every wish came true.
     visitors: Vec<AtomicU32>,
     /// `[cell]`: grains now; kept only where cells get crowded.
@@ -39,7 +39,7 @@ pub(crate) struct ExcludedVolume<V: Vector> {
 }
 
 /// The blocks that one thread takes, each with its wishes.
-type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Displaced<V>>)>;
+type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Wish<V>>)>;
 
 impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
@@ -90,14 +90,13 @@ impl<V: Vector> ExcludedVolume<V> {
         let wishes =
             Wishes { places: self.places(laws, grid, offsets, capacity, step), visitors: &self.visitors };
         let collisions = PairCollisions::new(laws, grid, offsets, step);
-        parallel::copy(&columns.positions, &mut space.spare.positions);
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
         let results = parallel::each(parts.into_iter(), |part| {
             let blocks = part.into_iter().map(|(mut block, list)| {
                 let mut tally = Tally::default();
                 list.clear();
                 collisions.collide(&mut block, offsets, &mut tally, |displaced, _| {
-                    list.push(displaced);
+                    list.push(Wish::new(displaced));
                     false
                 });
                 (tally, wishes.grant(list, &mut block))
@@ -141,13 +140,12 @@ impl<V: Vector> ExcludedVolume<V> {
         let places = self.places(laws, grid, offsets, capacity, step);
         let wishes = Wishes { places, visitors: &self.visitors };
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
-        let (occupancy, originals) = (&self.occupancy, &space.spare.positions);
+        let occupancy = &self.occupancy;
         let results = parallel::each(parts.into_iter(), |part| {
             let mut contested = Vec::new();
-            let carried = part.into_iter().map(|(mut block, list)| {
-                let originals = &originals[block.rows()];
-                wishes.keep_calm(list, &mut block, originals, occupancy, &mut contested)
-            });
+            let carried = part
+                .into_iter()
+                .map(|(mut block, list)| wishes.keep_calm(list, &mut block, occupancy, &mut contested));
             (carried.collect::<Vec<_>>(), contested)
         });
         let (mut contested, mut carried) = (Vec::new(), 0.0);
@@ -290,7 +288,7 @@ fn meet_the_edge<V: Vector, R: Restitution>(
 /// Gives every block the wishes of its place.
 fn with_wishes<'a, V: Vector>(
     parts: Vec<Part<'a, V>>,
-    wishes: &'a mut Vec<Vec<Displaced<V>>>,
+    wishes: &'a mut Vec<Vec<Wish<V>>>,
     grid: &Grid<V>,
 ) -> Vec<WishingPart<'a, V>> {
     wishes.resize_with(Block::<V>::number_of(grid.number_of_cells() as u32 - 1) + 1, Vec::new);
@@ -310,12 +308,12 @@ fn with_wishes<'a, V: Vector>(
 }
 
 /// The wishes of a cell.
-fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Displaced<V>>], offsets: &[u32]) -> Contested<'a, V> {
+fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Wish<V>>], offsets: &[u32]) -> Contested<'a, V> {
     let number = Block::<V>::number_of(cell);
     let first_cell = Block::<V>::first_cell(number);
     let list = &wishes[number];
-    let first = list.partition_point(|wish| wish.cell < cell);
-    let last = list.partition_point(|wish| wish.cell <= cell);
+    let first = list.partition_point(|wish| wish.asked.cell < cell);
+    let last = list.partition_point(|wish| wish.asked.cell <= cell);
     Contested { cell, first_row: offsets[first_cell as usize] as usize, wishes: &list[first..last] }
 }
 
