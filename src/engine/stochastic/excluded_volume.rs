@@ -260,8 +260,11 @@ fn fly<V: Vector, R: Restitution>(
         let target = if flights.is_free(there) {
             flights.cell_inside(there)
         } else {
-            (there, gained) = (position, velocity);
-            flights.meet_the_edge((&mut there, &mut gained, block.ids[row]), &mut tally.counts)
+            // Variables of its own: those whose address is handed out live in memory, for all grains.
+            let (mut end, mut last) = (position, velocity);
+            let target = flights.meet_the_edge((&mut end, &mut last, block.ids[row]), &mut tally.counts);
+            (there, gained) = (end, last);
+            target
         };
         speeds.note(gained);
         counter.add(target);
