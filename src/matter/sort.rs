@@ -103,8 +103,15 @@ impl CountingSort {
     }
 
     /// Grains that go to `cell`.
+    #[inline]
     pub fn total(&self, cell: u32) -> u32 {
-        self.cursors[cell as usize..].iter().step_by(self.number_of_cells).sum()
+        // A loop of its own: the steps of an iterator begin with a division.
+        let (mut total, mut place) = (0, cell as usize);
+        while place < self.cursors.len() {
+            total += self.cursors[place];
+            place += self.number_of_cells;
+        }
+        total
     }
 
     /// Cells that more than `capacity` grains go to, in rising order.

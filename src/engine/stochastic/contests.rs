@@ -193,9 +193,12 @@ impl Region<'_> {
         news.iter().for_each(|&contest| self.come_back(contest, wanted.capacity));
         while let Some(place) = self.queue.pop() {
             let here = (place - self.first) as usize;
-            self.rank(here, wanted);
             let Contest { total, first, accepted, .. } = self.contests[here];
             let rejected = (total.saturating_sub(wanted.capacity)).min(accepted);
+            if rejected < accepted {
+                // Where all have to go nobody asks for ranks.
+                self.rank(here, wanted);
+            }
             self.contests[here].total -= rejected;
             self.contests[here].accepted -= rejected;
             let first = (first - self.first_arrival) as usize;
