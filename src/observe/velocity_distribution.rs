@@ -101,8 +101,8 @@ fn look<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<f64> {
 fn tally<V: Vector>(gas: &Gas<V>, axis: usize) -> Option<Tally> {
     let (mean, temperature) = (mean_velocity(gas), temperature(gas));
     let squares = temperature * (gas.len() * V::DIMENSION) as f64;
-    // Written so that NaN ends here too.
-    if !(squares > ROUNDING * ROUNDING * 2.0 * kinetic_energy(gas)) {
+    let rounding = ROUNDING * ROUNDING * 2.0 * kinetic_energy(gas);
+    if squares <= rounding {
         return None;
     }
     let scale = |mass: f64| (mass / temperature).sqrt();
