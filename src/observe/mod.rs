@@ -3,6 +3,7 @@
 pub mod centre_of_mass;
 pub mod collisions;
 pub mod density_contrast;
+pub mod density_distribution;
 pub mod density_profile;
 pub mod energy;
 pub mod flow;
@@ -10,12 +11,16 @@ pub mod heap;
 pub mod impact_parameter;
 pub mod measure;
 pub mod moments;
+pub mod pair_correlation;
 pub mod pressure;
 pub mod setting;
 pub mod spectrum;
+pub mod structure_factor;
+pub mod velocity_distribution;
 pub mod velocity_profile;
 pub mod wall_stress;
 
+mod density_waves;
 mod layout;
 mod packing;
 mod samples;
@@ -29,7 +34,7 @@ use measure::Measure;
 use setting::Setting;
 
 /// The names of all measures, in the order in which [`measures`] gives those that apply.
-pub const NAMES: [&str; 12] = [
+pub const NAMES: [&str; 16] = [
     "energy",
     "density-profile",
     "velocity-profile",
@@ -42,6 +47,10 @@ pub const NAMES: [&str; 12] = [
     "spectrum",
     "heap",
     "centre-of-mass",
+    "velocity-distribution",
+    "density-distribution",
+    "pair-correlation",
+    "structure-factor",
 ];
 
 /// The measures that apply to `setting` and are cheap or among those `named`, always in the same order.
@@ -52,7 +61,7 @@ pub fn measures<V: Vector>(setting: &Setting<V>, named: Option<&[String]>) -> Ve
 
 /// All measures that apply to `setting`, always in the same order.
 fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
-    let applying: [Option<Box<dyn Measure<V>>>; 12] = [
+    let applying: [Option<Box<dyn Measure<V>>>; 16] = [
         Some(Box::new(energy::Energy::new(setting))),
         Some(Box::new(density_profile::DensityProfile::new(setting))),
         boxed(velocity_profile::VelocityProfile::new(setting)),
@@ -65,6 +74,10 @@ fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
         boxed(spectrum::Spectrum::new(setting)),
         boxed(heap::Heap::new(setting)),
         boxed(centre_of_mass::CentreOfMass::new(setting)),
+        Some(Box::new(velocity_distribution::VelocityDistribution::new(setting))),
+        Some(Box::new(density_distribution::DensityDistribution::new())),
+        boxed(pair_correlation::PairCorrelation::new(setting)),
+        boxed(structure_factor::StructureFactor::new(setting)),
     ];
     applying.into_iter().flatten().collect()
 }
@@ -80,12 +93,17 @@ mod tests {
     use crate::observe::testing::{Bed, rough, setting_of, show, smooth};
     use glam::{DVec2, DVec3};
 
+    /// The measures for `bed`, without those of grains and their neighbours, which ask for little.
     fn names<V: Vector>(bed: &Bed<V>) -> Vec<&'static str> {
         let names: Vec<&str> = applying(&bed.setting).iter().map(|measure| measure.name()).collect();
         let places: Vec<usize> =
             names.iter().map(|name| NAMES.iter().position(|n| n == name).unwrap()).collect();
         assert!(places.is_sorted());
-        names
+        let of_all = ["velocity-distribution", "density-distribution", "pair-correlation"];
+        assert!(of_all.iter().all(|name| names.contains(name)));
+        let is_periodic = (0..V::DIMENSION).any(|axis| bed.setting.boundary.is_periodic(axis));
+        assert_eq!(names.contains(&"structure-factor"), is_periodic);
+        names.into_iter().filter(|name| !of_all.contains(name) && *name != "structure-factor").collect()
     }
 
     #[test]
@@ -119,6 +137,19 @@ mod tests {
             names(&pipe),
             ["energy", "density-profile", "wall-stress", "collisions", "heap", "centre-of-mass"]
         );
+    }
+
+    #[test]
+    fn costly_measures_are_taken_where_they_are_named() {
+        let setting = setting_of(DVec2::splat(8.0), [4, 4, 1]).setting;
+        let taken = |named: Option<&[String]>| -> Vec<&str> {
+            measures(&setting, named).iter().map(|measure| measure.name()).collect()
+        };
+        let cheap = taken(None);
+        assert!(cheap.contains(&"velocity-distribution") && !cheap.contains(&"pair-correlation"));
+        let with = taken(Some(&["pair-correlation".to_owned()]));
+        assert!(with.contains(&"pair-correlation") && !with.contains(&"structure-factor"));
+        assert_eq!(with.len(), cheap.len() + 1);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Rows of numbers taken at rising times, and steady figures from them.
 
+use std::ops::Range;
+
 use super::measure::Figure;
 use crate::statistics::{Estimate, block_average, blocks, standard_error};
 
@@ -55,6 +57,16 @@ impl Samples {
 pub(crate) fn steady_mean(rows: &[&[f64]], value: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
     let values: Vec<f64> = rows.iter().map(|row| value(row)).filter(|x| x.is_finite()).collect();
     block_average(&values)
+}
+
+/// Means of several values over the rows and their errors from blocks, `[value]`; NaN where there is none.
+pub(crate) fn steady_means(rows: &[&[f64]], values: Range<usize>) -> (Vec<f64>, Vec<f64>) {
+    let estimates = values.map(|value| steady_mean(rows, |row| row[1 + value]));
+    let pairs = estimates.map(|estimate| {
+        let error = estimate.and_then(|e| e.standard_error);
+        (estimate.map_or(f64::NAN, |e| e.value), error.unwrap_or(f64::NAN))
+    });
+    pairs.unzip()
 }
 
 /// Mean of a quantity that belongs to the interval between two rows, over all neighbours.
@@ -126,6 +138,8 @@ mod tests {
     fn what_is_not_finite_is_left_out() {
         let rows: [&[f64]; 3] = [&[0.0, 1.0], &[1.0, f64::NAN], &[2.0, 3.0]];
         assert_eq!(steady_mean(&rows, |row| row[1]).unwrap().value, 2.0);
+        assert_eq!(steady_means(&rows, 0..1), (vec![2.0], vec![1.0]));
+        assert!(steady_means(&[], 0..1).0[0].is_nan());
         assert_eq!(figure("x", Some(Estimate { value: f64::NAN, standard_error: None })).value, None);
     }
 }

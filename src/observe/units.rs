@@ -11,6 +11,8 @@ pub(crate) const LENGTH: Dimension = Dimension { mass: 0, length: 1, time: 0 };
 pub(crate) const VELOCITY: Dimension = Dimension { mass: 0, length: 1, time: -1 };
 /// A rate or a frequency.
 pub(crate) const RATE: Dimension = Dimension { mass: 0, length: 0, time: -1 };
+/// A wavenumber.
+pub(crate) const WAVENUMBER: Dimension = Dimension { mass: 0, length: -1, time: 0 };
 /// An energy, or a granular temperature.
 pub(crate) const ENERGY: Dimension = Dimension { mass: 1, length: 2, time: -2 };
 

@@ -88,6 +88,10 @@ pub const MEASURES: &[&str] = &[
     "pressure",
     "collisions",
     "impact-parameter",
+    "velocity-distribution",
+    "density-distribution",
+    "pair-correlation",
+    "structure-factor",
 ];
 
 /// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the
