@@ -3,6 +3,7 @@
 
 mod bound;
 pub mod builtin;
+mod calibration_file;
 mod cells;
 pub mod check;
 mod collapse;
@@ -26,6 +27,8 @@ mod tables;
 mod walls;
 mod warnings;
 
+use std::path::Path;
+
 use toml_edit::{Document, TomlError};
 
 pub use error::ScenarioError;
@@ -39,15 +42,21 @@ pub use schema::MEASURES;
 /// The scenario that `source` names, a file or a built-in one, with `overrides`.
 pub fn load(source: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
     let (name, text) = file::fetch(source)?;
-    parse_as(source, &name, &text, overrides)
+    parse_as(Path::new(source), &name, &text, overrides)
 }
 
 /// The scenario called `name` that `text` describes, with `overrides`.
 pub fn parse(name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
-    parse_as(name, name, text, overrides)
+    parse_as(Path::new(name), name, text, overrides)
 }
 
-fn parse_as(file: &str, name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
+fn parse_as(
+    path: &Path,
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<AnyScenario, ScenarioError> {
+    let file = &*path.to_string_lossy();
     let original = document(file, text)?;
     if original.as_table().is_empty() && overrides.sets.is_empty() {
         let message = "holds no scenario; `grainflow scenarios show shear` prints one to start from";
@@ -55,9 +64,12 @@ fn parse_as(file: &str, name: &str, text: &str, overrides: &Overrides) -> Result
     }
     let mut changed = original.clone().into_mut();
     let (changes, mut mistakes) = overrides.apply(&mut changed);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (inlined, unreadable) = calibration_file::inline(&mut changed, folder, &changes);
     // Without a change the text stays as it was written, byte for byte.
-    let source_text = if changes.is_empty() { text.to_owned() } else { changed.to_string() };
+    let source_text = if changes.is_empty() && !inlined { text.to_owned() } else { changed.to_string() };
     let reader = Reader::new(Locator::new(original, changes));
+    unreadable.into_iter().for_each(|(path, message)| reader.mistake(&path, message));
     let root = Section::root(&reader, changed.as_table(), schema::ROOT);
     let scenario = if tables::head::dimension(&root) == 3 {
         read::read(&root, name, source_text).map(AnyScenario::Three)

@@ -286,6 +286,16 @@ impl<'a> Section<'a> {
         self.numbers(key, V::DIMENSION, bound).map(|values| V::from_fn(|axis| values[axis]))
     }
 
+    /// At least one finite number within `bound`, any number of them.
+    pub(super) fn list(&self, key: &str, bound: Bound) -> Found<Vec<f64>> {
+        let Some(item) = self.item(key) else { return Found::Missing };
+        match item.as_array().map(toml_edit::Array::len) {
+            None => self.wrong(key, format!("must be a list of numbers, not {}", kind(item))),
+            Some(0) => self.wrong(key, "is empty; give at least one number".to_owned()),
+            Some(length) => self.numbers(key, length, bound),
+        }
+    }
+
     /// `length` finite numbers within `bound`.
     pub(super) fn numbers(&self, key: &str, length: usize, bound: Bound) -> Found<Vec<f64>> {
         let Some(item) = self.item(key) else { return Found::Missing };

@@ -6,6 +6,7 @@
 //! order of work reaches the same set: the result depends on no order of cells or threads.
 
 use super::contests::Wanted;
+use crate::law::piecewise::PiecewiseLinear;
 use crate::matter::grid::Grid;
 use crate::matter::sort::{CountingSort, REMOVED};
 use crate::random::PhaseStreams;
@@ -54,10 +55,34 @@ impl<V: Vector> Moves<'_, V> {
         self.grid.cell_of(self.positions[row as usize])
     }
 
-    /// The thesis' rule: a cell is open to any number when below capacity before the moves.
-    pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
+    /// Grains in each cell before the moves, `[cell]`.
+    fn occupancy(&self) -> Vec<u32> {
         let mut occupancy = vec![0_u32; self.grid.number_of_cells()];
         self.positions.iter().for_each(|&position| occupancy[self.grid.cell_of(position) as usize] += 1);
+        occupancy
+    }
+
+    /// A mover gets into a cell of volume fraction ν with probability p(ν) alone (Müller 2001, figure 2.1), ν that
+    /// of the cell before the moves; `grain_share` is the volume fraction of one grain. In rising order of rows.
+    pub(crate) fn refuse_by_chance(&mut self, p: &PiecewiseLinear, grain_share: f64) -> Vec<Rejected> {
+        let occupancy = self.occupancy();
+        let is_refused = |row: u32| {
+            let wanted = self.targets[row as usize];
+            if wanted == REMOVED || wanted == self.source(row) {
+                return false;
+            }
+            let fraction = f64::from(occupancy[wanted as usize]) * grain_share;
+            let id = u64::from(self.ids[row as usize]);
+            // The first draw of the stream, and not the hash that names it: that one ranks arrivals.
+            self.ranks.stream(id).uniform() >= p.at(fraction)
+        };
+        let rows: Vec<u32> = (0..self.targets.len() as u32).filter(|&row| is_refused(row)).collect();
+        self.turned_back(rows.into_iter())
+    }
+
+    /// The thesis' rule: a cell is open to any number when below capacity before the moves.
+    pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
+        let occupancy = self.occupancy();
         let refused = |row: u32| {
             let wanted = self.targets[row as usize];
             wanted != REMOVED && occupancy[wanted as usize] >= self.capacity && wanted != self.source(row)

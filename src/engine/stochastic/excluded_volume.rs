@@ -15,6 +15,7 @@ use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
 use super::wishes::{Places, Wishes};
+use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::Restitution;
 use crate::matter::columns::Columns;
 use crate::matter::gas::{Gas, SortSpace};
@@ -27,6 +28,8 @@ use crate::space::Vector;
 #[derive(Debug)]
 pub(crate) struct ExcludedVolume<V: Vector> {
     rules: HsmcRules,
+    /// p(ν) of entering a cell, where it is more than a question of room.
+    pub(crate) entry_probability: Option<PiecewiseLinear>,
     cell_collisions: CellCollisions<V>,
     /// `[block]`: displacements that the collisions of the step ask for.
     wishes: Vec<Vec<Displaced<V>>>,
@@ -45,6 +48,7 @@ impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
         ExcludedVolume {
             rules,
+            entry_probability: None,
             cell_collisions: CellCollisions::default(),
             wishes: Vec::new(),
             visitors: Vec::new(),
@@ -207,14 +211,17 @@ impl<V: Vector> ExcludedVolume<V> {
             ranks: laws.streams.at(step.number, Phase::Admission),
         };
         self.held.clear(columns.len());
+        let volume = laws.grain.volume::<V>() / gas.grid().cell_volume();
+        let refused = self.entry_probability.as_ref().map(|entry| moves.refuse_by_chance(entry, volume));
         let mut rejected = match self.rules.admission {
             Admission::Strict => moves.reject_surplus(),
             Admission::Thesis => moves.reject_at_full_cells(),
         };
-        tally.counts.rejected_moves += rejected.len() as u64;
-        rejected
-            .iter()
-            .for_each(|&Rejected { row, .. }| take_back_wall_momentum(&flights, columns, row, tally));
+        let refused = refused.unwrap_or_default();
+        tally.counts.rejected_moves += (rejected.len() + refused.len()) as u64;
+        for &Rejected { row, .. } in rejected.iter().chain(&refused) {
+            take_back_wall_momentum(&flights, columns, row, tally);
+        }
         if self.rules.admission == Admission::Strict {
             for axis in axes_with_gravity_last(laws.gravity) {
                 for row in moves.slide(axis, &mut rejected) {
@@ -222,7 +229,7 @@ impl<V: Vector> ExcludedVolume<V> {
                 }
             }
         }
-        rejected.iter().for_each(|rejected| self.held.hold(rejected.row));
+        rejected.iter().chain(&refused).for_each(|rejected| self.held.hold(rejected.row));
         self.held.order();
         for row in self.held.rows() {
             if flights.is_out(self.held.held_position(&flights, columns, row as usize)) {
