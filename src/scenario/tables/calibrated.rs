@@ -15,7 +15,10 @@ pub(super) fn impact_law(engine: &Section<'_>) -> Option<ImpactLaw> {
     let Some(form) = table_of(engine, KEY, "uniform", FORMS, schema::IMPACT_PARAMETER)? else {
         return Some(ImpactLaw::UNIFORM);
     };
-    if !form.has("collisions_per_particle") && !form.has("table") && form.item("c").is_some_and(|item| !item.is_array()) {
+    if !form.has("collisions_per_particle")
+        && !form.has("table")
+        && form.item("c").is_some_and(|item| !item.is_array())
+    {
         let [_, (name, bound)] = IMPACT_PARAMETER.columns;
         let Found::Value(c) = form.number(name, bound) else { return None };
         return Some(ImpactLaw::of(PiecewiseLinear::constant(c)));
