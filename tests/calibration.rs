@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 use grainflow::campaign::calibrate::{CalibrationError, Request, calibrate};
@@ -153,4 +154,72 @@ fn what_cannot_be_calibrated_is_refused() {
     let lonely = gas(100, 0.001, 0.9, 5.0).replace("collisions_per_particle = 5", "time = 1e-9");
     let error = calibrated(&lonely, place.path(), 1, &Overrides::default()).unwrap_err();
     assert!(matches!(error, CalibrationError::Nothing) && !place.path().join("tables").exists(), "{error}");
+}
+
+#[test]
+fn options_name_tables_from_where_the_program_runs() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("gas.toml");
+    fs::write(&path, gas(100, 0.1, 0.9, 5.0)).unwrap();
+    fs::write(place.path().join("own.csv"), "c,collisions_per_particle\n0.2,0\n").unwrap();
+    let with = |text: &str, set: &str| {
+        fs::write(&path, text).unwrap();
+        load(path.to_str().unwrap(), &Overrides { sets: vec![set.to_owned()], ..Overrides::default() })
+    };
+    let plain = gas(100, 0.1, 0.9, 5.0);
+    // Tests run in the folder of the project.
+    let error = with(&plain, "engine.impact_parameter.table=tests/tables/impact-too-large.csv").unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with("--set #1 ") && message.contains("impact-too-large.csv:4: column `c`"),
+        "{message}"
+    );
+    // An option takes the place of a table that the scenario names.
+    let named = plain.replace("cell_size = 3.0", "impact_parameter = { table = \"own.csv\" }");
+    let c_of = |scenario: AnyScenario| match scenario {
+        AnyScenario::Two(scenario) => scenario.engine.impact_law.at(1.0).c(),
+        AnyScenario::Three(_) => panic!("the gas is flat"),
+    };
+    assert_eq!(c_of(with(&named, "seed=4").unwrap()), 0.2);
+    assert_eq!(c_of(with(&named, "engine.impact_parameter.c=-0.5").unwrap()), -0.5);
+    assert_eq!(c_of(with(&named, "engine.impact_parameter=uniform").unwrap()), 0.0);
+}
+
+#[test]
+fn the_command_writes_four_files_and_refuses_what_is_wrong() {
+    let place = tempfile::tempdir().unwrap();
+    let grainflow = |more: &[&str]| {
+        let quick = ["calibrate", "cooling", "--set", "particles.count=400", "--set", "domain.size=[35, 35]"];
+        let brief = ["--set", "run.collisions_per_particle=20", "--replicas=2"];
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("grainflow"));
+        command.current_dir(place.path()).args(quick).args(brief).args(more).output().unwrap()
+    };
+    let output = grainflow(&["--threads=2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("wrote out/cooling-calibrate/calibration.html"));
+    let folder = place.path().join("out/cooling-calibrate");
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&read("calibration.json")).unwrap();
+    assert_eq!(found["replicas"], 2);
+    let counted = |key: &str| found[key].as_array().unwrap().len();
+    // A comment and the names stand above the points.
+    assert_eq!(read("impact.csv").lines().count(), 2 + counted("impact_parameter"));
+    assert_eq!(read("entry.csv").lines().count(), 2 + counted("entry_probability"));
+    assert!(read("calibration.html").matches("<svg").count() == 3);
+
+    // The same again, on one thread, in silence: the same tables.
+    let before = [read("impact.csv"), read("entry.csv"), read("calibration.json")];
+    assert_eq!(grainflow(&[]).status.code(), Some(2), "an old calibration is not replaced unasked");
+    let output = grainflow(&["--force", "--quiet", "--threads=1"]);
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
+    assert_eq!(before, [read("impact.csv"), read("entry.csv"), read("calibration.json")]);
+
+    for (wrong, words) in [
+        (["--set", "particles.restitution=2"], "--set #4 'particles.restitution=2'"),
+        (["--threads", "0"], "--threads"),
+    ] {
+        let output = grainflow(&wrong);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(words), "{output:?}");
+    }
 }

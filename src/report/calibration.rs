@@ -47,6 +47,8 @@ pub struct Stage {
     pub impacts: [u64; IMPACT_BINS],
     /// c of p(b) ∝ 1/(1 − c b²).
     pub c: Estimate,
+    /// χ² of the bins against that law; 38 are expected of a law that holds.
+    pub chi_squared: f64,
     /// ⟨1 − b²⟩ of that law over its value under molecular chaos.
     pub cooling_factor: f64,
     /// The density of |b|/d that belongs to c, as points.
@@ -189,7 +191,7 @@ fn entry_probability(calibration: &Calibration) -> Option<Plot> {
     measured.errors = entries.iter().map(|entry| entry.probability.standard_error.unwrap_or(0.0)).collect();
     let arrivals =
         Curve::new("arrivals over attempts", points(Entry::flux_ratio), Stroke::Line, Ink::Series(1));
-    let ends = [0.0, last.volume_fraction];
+    let ends = [0.0, 1.06 * last.volume_fraction.max(1e-3)];
     Some(Plot {
         title: "Probability of entering a cell".to_owned(),
         caption: "p: of the grains whose free flight through a step leads into a cell of volume fraction ν, the share that \
@@ -211,18 +213,20 @@ fn table(calibration: &Calibration) -> String {
     }
     let mut html = String::from(
         "<section>\n<h2>Numbers</h2>\n<div class=\"references\"><table>\n<thead><tr><th>Collisions per particle</th>\
-         <th>Collisions</th><th>c</th><th>Energy per collision over that of chaos</th></tr></thead>\n<tbody>\n",
+         <th>Collisions</th><th>c</th><th>χ² (38 expected)</th><th>Energy per collision over that of chaos</th></tr></thead>\n<tbody>\n",
     );
+    let cell = |text: &str| format!("<td class=\"number\">{text}</td>");
     for stage in &calibration.stages {
         let all: u64 = stage.impacts.iter().sum();
         let _ = writeln!(
             html,
-            "<tr><td>{} … {}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>",
+            "<tr><td>{} … {}</td>{}{}{}{}</tr>",
             number(stage.stretch[0], 4),
             number(stage.stretch[1], 4),
-            count(all as f64),
-            with_error(stage.c.value, stage.c.standard_error),
-            number(stage.cooling_factor, 4),
+            cell(&count(all as f64)),
+            cell(&with_error(stage.c.value, stage.c.standard_error)),
+            cell(&number(stage.chi_squared, 3)),
+            cell(&number(stage.cooling_factor, 4)),
         );
     }
     html.push_str("</tbody>\n</table></div>\n</section>\n");

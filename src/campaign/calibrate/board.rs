@@ -16,7 +16,7 @@ impl<'a> Board<'a> {
 
     /// Takes the `status` of run `number`, and tells of all: the mean progress, the events together.
     pub(super) fn tell(&self, number: usize, status: Status) {
-        // A thread that panicked while telling has ended the program's sense anyway.
+        // Only a panic while telling poisons the lock; it is on its way to the user.
         let Ok(mut told) = self.told.lock() else { return };
         let (runs, listener) = &mut *told;
         runs[number] = Some(status);

@@ -76,6 +76,7 @@ fn stage(stage: &Stage) -> Value {
         "to": stage.stretch[1],
         "c": stage.c.value,
         "c_standard_error": stage.c.standard_error,
+        "chi_squared": stage.chi_squared,
         "cooling_factor": stage.cooling_factor,
         "impacts": stage.impacts.to_vec(),
     })

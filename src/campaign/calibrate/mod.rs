@@ -12,6 +12,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
+use crate::engine::report::IMPACT_BINS;
 use crate::report::calibration::Calibration;
 use crate::run::folder::{FolderError, RunFolder};
 use crate::run::{Listener, RunError};
@@ -25,6 +26,8 @@ use replica::{Replica, watch};
 
 /// Collisions per particle of the equilibration of a free gas that asks for none.
 const EQUILIBRATION: f64 = 10.0;
+/// χ² of a p(b) that has the form of the law: bins without the norm and c.
+const EXPECTED_CHI_SQUARED: f64 = (IMPACT_BINS - 2) as f64;
 /// Seeds end below this.
 const SEEDS: u64 = 1 << 63;
 
@@ -207,6 +210,13 @@ fn remarks(found: &Calibration) -> Vec<String> {
          stochastic engine makes by itself; arrivals over attempts show what is left when as many come in otherwise."
             .to_owned(),
     ];
+    let limit = EXPECTED_CHI_SQUARED + 5.0 * (2.0 * EXPECTED_CHI_SQUARED).sqrt();
+    if found.stages.iter().any(|stage| stage.chi_squared > limit) {
+        remarks.push(format!(
+            "In some stages χ² exceeds {limit:.0}: p(b) has another form there than one c can give it, and the law is its \
+             best likeness."
+        ));
+    }
     if found.replicas < 4 {
         remarks.push("Fewer than four runs tell little of how runs scatter.".to_owned());
     }

@@ -7,8 +7,8 @@ use crate::report::calibration::Stage;
 use crate::space::Vector;
 use crate::statistics::{Estimate, standard_error};
 
-/// The fewest collisions of a stage, of all runs together: c is then known to 0.04.
-const FEWEST_COLLISIONS: u64 = 8000;
+/// The fewest collisions of a stage, of all runs together: an error of c of 0.024 at c = 0.
+const FEWEST_COLLISIONS: u64 = 20_000;
 /// A stage ends at least this factor behind its beginning.
 const LEAST_FACTOR: f64 = 1.25;
 /// A stage lasts at least this many collisions per particle.
@@ -95,9 +95,21 @@ fn stage<V: Vector>(runs: &[Vec<Slice>], first: usize, end: usize) -> Option<Sta
         stretch: stretch(runs, first, end),
         impacts,
         c: Estimate { value: c.value, standard_error: errors.into_iter().flatten().reduce(f64::max) },
+        chi_squared: chi_squared::<V>(&impacts, c.value),
         cooling_factor: law.cooling_factor::<V>(),
         density: (0..CURVE_POINTS).map(density).collect(),
     })
+}
+
+/// χ² of `impacts` against the law of this c; there are two degrees of freedom less than bins.
+fn chi_squared<V: Vector>(impacts: &[u64; IMPACT_BINS], c: f64) -> f64 {
+    let (whole, all) = (V::impact_integral(c, 1.0), impacts.iter().sum::<u64>() as f64);
+    let below = |bin: usize| V::impact_integral(c, bin as f64 / IMPACT_BINS as f64) / whole;
+    let term = |(bin, &count): (usize, &u64)| {
+        let expected = all * (below(bin + 1) - below(bin));
+        (count as f64 - expected) * (count as f64 - expected) / expected
+    };
+    impacts.iter().enumerate().map(term).sum()
 }
 
 fn c_of<V: Vector>(impacts: &[u64; IMPACT_BINS]) -> Option<Estimate> {
@@ -135,8 +147,10 @@ mod tests {
         for stage in &stages {
             let error = stage.c.standard_error.unwrap();
             assert!((stage.c.value - c).abs() < 4.0 * error, "{c}: {:?}", stage.c);
-            // 8000 collisions or more: below 0.04 at c = 0, less where p(b) is steep.
+            // 20 000 collisions or more; runs may scatter by more than that.
             assert!(error < 0.1);
+            // 38 degrees of freedom: standard deviation √76.
+            assert!(stage.chi_squared < 38.0 + 5.0 * 76.0_f64.sqrt(), "χ² = {}", stage.chi_squared);
         }
         let all: u64 = stages.iter().flat_map(|stage| stage.impacts).sum();
         assert_eq!(all, 4 * 40 * 2000);
@@ -169,9 +183,19 @@ mod tests {
         // Runs of different c: the curvature of the likelihood knows nothing of that.
         let runs: Vec<_> =
             [0.0, 0.2, 0.4, 0.6].iter().map(|&c| run::<DVec2>(9, 20, 4000, move |_| c)).collect();
-        let error = stages::<DVec2>(&runs)[0].c.standard_error.unwrap();
+        let stage = &stages::<DVec2>(&runs)[0];
+        let error = stage.c.standard_error.unwrap();
         // The standard deviation of the four is 0.26, half of that is their standard error.
         assert!((error - 0.13).abs() < 0.06, "{error}");
+    }
+
+    #[test]
+    fn a_density_of_another_form_has_a_large_chi_squared() {
+        // Half of the collisions are chaotic, half glance as of c = 0.99: no single c does both.
+        let mut runs: Vec<_> = [0.0, 0.99].iter().map(|&c| run::<DVec2>(4, 20, 20_000, move |_| c)).collect();
+        assert!(stages::<DVec2>(&runs)[0].chi_squared > 38.0 + 10.0 * 76.0_f64.sqrt());
+        runs.truncate(1);
+        assert!(stages::<DVec2>(&runs)[0].chi_squared < 38.0 + 5.0 * 76.0_f64.sqrt());
     }
 
     #[test]
