@@ -18,7 +18,23 @@ pub struct Columns<V: Vector> {
     pub species: Option<Vec<u8>>,
 }
 
+/// The rows of the columns that all grains have, to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<'a, V: Vector> {
+    /// Positions [length].
+    pub positions: &'a [V],
+    /// Velocities [length/time].
+    pub velocities: &'a [V],
+    /// Identities.
+    pub ids: &'a [u32],
+}
+
 impl<V: Vector> Columns<V> {
+    /// All rows.
+    pub fn rows(&self) -> Rows<'_, V> {
+        Rows { positions: &self.positions, velocities: &self.velocities, ids: &self.ids }
+    }
+
     /// Number of grains.
     pub fn len(&self) -> usize {
         self.ids.len()

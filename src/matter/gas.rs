@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::clock::Clock;
-use super::columns::Columns;
+use super::columns::{Columns, Rows};
 use super::grain::Grain;
 use super::grid::Grid;
 use super::scatter::{Labels, Slot};
@@ -178,14 +178,15 @@ impl<V: Vector> Gas<V> {
     pub fn sort_counted(
         &mut self,
         space: &mut SortSpace<V>,
-        put: impl Fn(&Columns<V>, usize, Slot<'_, V>) + Sync,
+        put: impl Fn(Rows<'_, V>, usize, Slot<'_, V>) + Copy + Sync,
     ) {
         let kept = space.sort.accumulate(&mut self.offsets);
         space.spare.match_shape(&self.columns);
         space.spare.truncate(kept);
-        let columns = &self.columns;
-        let cells = &space.cells[..columns.len()];
-        space.sort.fill(cells, &mut space.spare, columns.labels(), |row, slot| put(columns, row, slot));
+        let rows = self.columns.rows();
+        let cells = &space.cells[..self.columns.len()];
+        let labels = self.columns.labels();
+        space.sort.fill(cells, &mut space.spare, labels, move |row, slot| put(rows, row, slot));
         std::mem::swap(&mut self.columns, &mut space.spare);
     }
 
@@ -195,7 +196,7 @@ impl<V: Vector> Gas<V> {
         &mut self,
         space: &mut SortSpace<V>,
         labels: Labels<'_, V>,
-        grain: impl Fn(&Grid<V>, usize) -> (V, V, u32) + Sync,
+        grain: impl Fn(&Grid<V>, usize) -> (V, V, u32) + Copy + Sync,
     ) {
         space.sort.count(&space.cells, self.grid.number_of_cells());
         let kept = space.sort.accumulate(&mut self.offsets);
@@ -210,8 +211,8 @@ impl<V: Vector> Gas<V> {
 
 /// Brings the grain of a row into its slot as it is.
 #[inline(always)]
-pub fn copy<V: Vector>(columns: &Columns<V>, row: usize, slot: Slot<'_, V>) {
-    slot.put(columns.positions[row], columns.velocities[row], columns.ids[row]);
+pub fn copy<V: Vector>(rows: Rows<'_, V>, row: usize, slot: Slot<'_, V>) {
+    slot.put(rows.positions[row], rows.velocities[row], rows.ids[row]);
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 pub mod bins;
 pub mod clock;
 pub mod columns;
+pub mod fetch;
 pub mod gas;
 pub mod grain;
 pub mod grid;

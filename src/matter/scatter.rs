@@ -9,15 +9,30 @@ use super::sort::CountingSort;
 use crate::space::Vector;
 
 /// A column that threads write to at different places.
+///
+/// It is copied into the loops that fill it: read through a reference, its address would have to be read again after
+/// every store, which might have changed it for all that the compiler knows.
 struct Shared<'a, T> {
     first: *mut T,
     length: usize,
     column: PhantomData<&'a mut [T]>,
 }
 
+impl<T> Clone for Shared<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Shared<'_, T> {}
+
 #[expect(unsafe_code, reason = "threads share the column and write to places that no two of them have")]
 // SAFETY: values are only ever moved in, by `put`, which demands that no place is used twice.
 unsafe impl<T: Send> Sync for Shared<'_, T> {}
+
+#[expect(unsafe_code, reason = "as above")]
+// SAFETY: as above; a copy is as good as a reference.
+unsafe impl<T: Send> Send for Shared<'_, T> {}
 
 impl<V: Vector> Labels<'_, V> {
     /// No grain has any.
@@ -35,7 +50,7 @@ impl<'a, T: Copy> Shared<'a, T> {
     /// Nobody else may write to the same place while this column is shared.
     #[inline(always)]
     #[expect(unsafe_code, reason = "see the module")]
-    unsafe fn put(&self, place: usize, value: T) {
+    unsafe fn put(self, place: usize, value: T) {
         assert!(place < self.length, "a place in the column");
         // SAFETY: the place lies inside the column, which is borrowed for as long as `self` lives; nobody else
         // writes to it, as the caller promises, and nobody reads before the threads have come together.
@@ -55,11 +70,12 @@ pub struct Labels<'a, V: Vector> {
 /// Where one grain belongs in sorted columns.
 #[derive(Clone, Copy)]
 pub struct Slot<'a, V: Vector> {
-    columns: &'a SharedColumns<'a, V>,
+    columns: SharedColumns<'a, V>,
     place: usize,
 }
 
 /// The columns that a sort fills.
+#[derive(Clone, Copy)]
 struct SharedColumns<'a, V: Vector> {
     positions: Shared<'a, V>,
     velocities: Shared<'a, V>,
@@ -89,7 +105,7 @@ impl CountingSort {
         cells: &[u32],
         columns: &mut Columns<V>,
         labels: Labels<'_, V>,
-        put: impl Fn(usize, Slot<'_, V>) + Sync,
+        put: impl Fn(usize, Slot<'_, V>) + Copy + Sync,
     ) {
         let shared = SharedColumns {
             positions: Shared::new(&mut columns.positions),
@@ -98,14 +114,14 @@ impl CountingSort {
         };
         let spins = columns.spins.as_deref_mut().map(Shared::new).zip(labels.spins);
         let species = columns.species.as_deref_mut().map(Shared::new).zip(labels.species);
-        self.place(cells, |row, place| {
-            put(row, Slot { columns: &shared, place });
+        self.place(cells, move |row, place| {
+            put(row, Slot { columns: shared, place });
             // SAFETY: the sort gives no place twice.
             unsafe {
-                if let Some((column, spins)) = &spins {
+                if let Some((column, spins)) = spins {
                     column.put(place, spins[row]);
                 }
-                if let Some((column, species)) = &species {
+                if let Some((column, species)) = species {
                     column.put(place, species[row]);
                 }
             }

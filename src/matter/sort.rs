@@ -175,8 +175,10 @@ impl CountingSort {
     }
 
     /// Tells `put` the row and the place of every grain that stays. No two grains have the same place.
-    pub(super) fn place(&mut self, cells: &[u32], put: impl Fn(usize, usize) + Sync) {
+    pub(super) fn place(&mut self, cells: &[u32], put: impl Fn(usize, usize) + Copy + Sync) {
         let work = |(cursors, rows): (&mut [u32], Range<usize>)| {
+            // A copy whose address nobody knows: its parts can stay in registers.
+            let put = put;
             for row in rows {
                 let cell = cells[row];
                 if cell != REMOVED {

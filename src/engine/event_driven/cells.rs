@@ -1,8 +1,8 @@
 //! Cells in which the grains that may meet are found.
 
 use super::body::{Body, Face, NONE, Plan};
-use super::fetch::fetch;
 use crate::law::boundary::Boundary;
+use crate::matter::fetch::fetch;
 use crate::space::Vector;
 
 /// Slack of a cell against the largest contact distance: rounding must not hide a contact.

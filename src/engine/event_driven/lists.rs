@@ -6,7 +6,7 @@
 
 use super::body::{Body, Plan};
 use super::cells::Cells;
-use super::fetch::fetch;
+use crate::matter::fetch::fetch;
 use crate::space::Vector;
 
 /// Places that a new list gets beyond its first neighbours.

@@ -12,7 +12,6 @@ mod cells;
 mod collapse;
 pub mod contact;
 mod events;
-mod fetch;
 pub mod growth;
 pub mod laws;
 mod lists;

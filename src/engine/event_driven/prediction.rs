@@ -2,9 +2,9 @@
 
 use super::body::{Body, Contact, Event, Face, NONE, Plan};
 use super::contact::{leave_interval, pair_contact};
-use super::fetch::fetch;
 use super::walls::{Fall, Meeting};
 use super::world::World;
+use crate::matter::fetch::fetch;
 use crate::space::Vector;
 
 impl<V: Vector> World<V> {

@@ -6,7 +6,7 @@
 //! order of work reaches the same set: the result depends on no order of cells or threads.
 
 use super::contests::Wanted;
-use crate::law::piecewise::PiecewiseLinear;
+use super::movers::Mover;
 use crate::matter::grid::Grid;
 use crate::matter::sort::{CountingSort, REMOVED};
 use crate::random::PhaseStreams;
@@ -17,10 +17,8 @@ pub(crate) struct Moves<'a, V: Vector> {
     pub(crate) grid: &'a Grid<V>,
     /// Grains that make a cell full.
     pub(crate) capacity: u32,
-    /// Where the rows of each cell begin, `[cell + 1]`; grains may have been displaced into other cells since.
-    pub(crate) offsets: &'a [u32],
-    /// `[row]`: positions before the move [length].
-    pub(crate) positions: &'a [V],
+    /// Those who want to change their cell, in rising order of rows.
+    pub(crate) movers: &'a [Mover<V>],
     /// `[row]`.
     pub(crate) ids: &'a [u32],
     /// `[row]`: the cell each grain goes to.
@@ -33,9 +31,8 @@ pub(crate) struct Moves<'a, V: Vector> {
 /// A grain whose move is rejected: it stays where it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rejected {
-    pub(crate) row: u32,
-    /// The cell it is in.
-    source: u32,
+    /// Its place among the movers.
+    pub(crate) mover: u32,
     /// The cell it wanted to enter.
     wanted: u32,
 }
@@ -46,49 +43,19 @@ struct Bid {
     cell: u32,
     rank: u64,
     id: u32,
-    row: u32,
+    mover: u32,
 }
 
 impl<V: Vector> Moves<'_, V> {
-    /// The cell that the grain in `row` comes from.
-    pub(crate) fn source(&self, row: u32) -> u32 {
-        self.grid.cell_of(self.positions[row as usize])
-    }
-
-    /// Grains in each cell before the moves, `[cell]`.
-    fn occupancy(&self) -> Vec<u32> {
-        let mut occupancy = vec![0_u32; self.grid.number_of_cells()];
-        self.positions.iter().for_each(|&position| occupancy[self.grid.cell_of(position) as usize] += 1);
-        occupancy
-    }
-
-    /// A mover gets into a cell of volume fraction ν with probability p(ν) alone (Müller 2001, figure 2.1), ν that
-    /// of the cell before the moves; `grain_share` is the volume fraction of one grain. In rising order of rows.
-    pub(crate) fn refuse_by_chance(&mut self, p: &PiecewiseLinear, grain_share: f64) -> Vec<Rejected> {
-        let occupancy = self.occupancy();
-        let is_refused = |row: u32| {
-            let wanted = self.targets[row as usize];
-            if wanted == REMOVED || wanted == self.source(row) {
-                return false;
-            }
-            let fraction = f64::from(occupancy[wanted as usize]) * grain_share;
-            let id = u64::from(self.ids[row as usize]);
-            // The first draw of the stream, and not the hash that names it: that one ranks arrivals.
-            self.ranks.stream(id).uniform() >= p.at(fraction)
-        };
-        let rows: Vec<u32> = (0..self.targets.len() as u32).filter(|&row| is_refused(row)).collect();
-        self.turned_back(rows.into_iter())
-    }
-
     /// The thesis' rule: a cell is open to any number when below capacity before the moves.
     pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
-        let occupancy = self.occupancy();
-        let refused = |row: u32| {
-            let wanted = self.targets[row as usize];
-            wanted != REMOVED && occupancy[wanted as usize] >= self.capacity && wanted != self.source(row)
+        let occupancy = occupancy_before(self.movers, self.targets, self.counts, self.grid.number_of_cells());
+        let refused = |mover: &u32| {
+            let wanted = self.targets[self.movers[*mover as usize].row as usize];
+            wanted != REMOVED && occupancy[wanted as usize] >= self.capacity
         };
-        let rows: Vec<u32> = (0..self.targets.len() as u32).filter(|&row| refused(row)).collect();
-        self.turned_back(rows.into_iter())
+        let refused = (0..self.movers.len() as u32).filter(refused).collect();
+        self.turned_back(refused)
     }
 
     /// The strict rule: the least set of rejections that leaves no cell above its capacity. In rising order of rows.
@@ -97,18 +64,19 @@ impl<V: Vector> Moves<'_, V> {
         if above.is_empty() {
             return Vec::new();
         }
-        let Moves { grid, capacity, offsets, positions, ids, ranks, .. } = *self;
-        let wanted = Wanted { grid, offsets, positions, targets: self.targets, ids, capacity, ranks };
-        let losers = wanted.losers(self.counts, &above);
-        self.turned_back(losers.iter())
+        let Moves { movers, capacity, ids, ranks, .. } = *self;
+        let wanted = Wanted { movers, targets: self.targets, ids, capacity, ranks };
+        let losers = wanted.losers(self.counts, self.grid.number_of_cells(), &above);
+        self.turned_back(losers)
     }
 
-    /// The moves of these rows, in rising order, are rejected: grains stay in their cells.
-    fn turned_back(&mut self, rows: impl Iterator<Item = u32>) -> Vec<Rejected> {
-        let rejected = rows.map(|row| {
-            let (source, wanted) = (self.source(row), self.targets[row as usize]);
+    /// These `movers` are rejected: they stay in their cells.
+    fn turned_back(&mut self, movers: Vec<u32>) -> Vec<Rejected> {
+        let rejected = movers.into_iter().map(|mover| {
+            let Mover { row, source, .. } = self.movers[mover as usize];
+            let wanted = self.targets[row as usize];
             self.send(row, source);
-            Rejected { row, source, wanted }
+            Rejected { mover, wanted }
         });
         rejected.collect()
     }
@@ -120,28 +88,51 @@ impl<V: Vector> Moves<'_, V> {
     }
 
     /// Lets rejected diagonal movers take the part of their move along `axis`, where the
-    /// face neighbour has room; winners by the same ranking. Returns their rows, in rising order; they
+    /// face neighbour has room; winners by the same ranking. Returns these movers, in rising order; they
     /// are no longer among the rejected.
     pub(crate) fn slide(&mut self, axis: usize, rejected: &mut Vec<Rejected>) -> Vec<u32> {
         let room = |cell: u32| self.capacity.saturating_sub(self.counts.total(cell)) as usize;
-        let bid = |&Rejected { row, source, wanted }: &Rejected| {
+        let bid = |&Rejected { mover, wanted }: &Rejected| {
+            let Mover { row, source, .. } = self.movers[mover as usize];
             let cell = face_cell(self.grid, axis, source, wanted).filter(|&cell| room(cell) > 0)?;
             let id = self.ids[row as usize];
-            Some(Bid { cell, rank: self.ranks.hash(u64::from(id)), id, row })
+            Some(Bid { cell, rank: self.ranks.hash(u64::from(id)), id, mover })
         };
         let mut bids: Vec<Bid> = rejected.iter().filter_map(bid).collect();
         bids.sort_unstable();
         let mut winners: Vec<(u32, u32)> = Vec::new();
         for contest in bids.chunk_by(|a, b| a.cell == b.cell) {
             let admitted = contest.iter().take(room(contest[0].cell));
-            winners.extend(admitted.map(|bid| (bid.row, bid.cell)));
+            winners.extend(admitted.map(|bid| (bid.mover, bid.cell)));
         }
         winners.sort_unstable();
-        winners.iter().for_each(|&(row, cell)| self.send(row, cell));
+        for &(mover, cell) in &winners {
+            self.send(self.movers[mover as usize].row, cell);
+        }
         let mut others = winners.iter().peekable();
-        rejected.retain(|rejected| others.next_if(|(row, _)| *row == rejected.row).is_none());
-        winners.into_iter().map(|(row, _)| row).collect()
+        rejected.retain(|rejected| others.next_if(|(mover, _)| *mover == rejected.mover).is_none());
+        winners.into_iter().map(|(mover, _)| mover).collect()
     }
+}
+
+/// Grains in each cell before the moves of `movers` to their `targets` `[row]`, which `counts` has counted, `[cell]`.
+pub(crate) fn occupancy_before<V: Vector>(
+    movers: &[Mover<V>],
+    targets: &[u32],
+    counts: &CountingSort,
+    number_of_cells: usize,
+) -> Vec<u32> {
+    let mut occupancy: Vec<u32> = (0..number_of_cells as u32).map(|cell| counts.total(cell)).collect();
+    for mover in movers {
+        occupancy[mover.source as usize] += 1;
+    }
+    for mover in movers {
+        let target = targets[mover.row as usize];
+        if target != REMOVED {
+            occupancy[target as usize] -= 1;
+        }
+    }
+    occupancy
 }
 
 /// The cell that the part along `axis` of a diagonal move from `source` to `target` leads
@@ -165,34 +156,33 @@ mod tests {
         Streams::new(3).at(5, Phase::Admission)
     }
 
-    /// Rows that the strict rule rejects, of grains sorted by their `homes` on a line of `cells`, which are in `sources`
-    /// when they want to go to `targets`; and how many grains each cell holds in the end.
-    fn rejected(
-        cells: u32,
-        capacity: u32,
-        homes: &[u32],
-        sources: &[u32],
-        targets: &[u32],
-    ) -> (Vec<u32>, Vec<u32>) {
+    /// Rows that the strict rule rejects, of grains that are in `sources` when they want to go to `targets` on a line of
+    /// `cells`; and how many grains each cell holds in the end.
+    fn rejected(cells: u32, capacity: u32, sources: &[u32], targets: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let size = DVec2::new(f64::from(cells), 1.0);
         let grid = Grid::new(DVec2::ZERO, size, &[cells, 1], &[false, false]);
-        let positions: Vec<DVec2> = sources.iter().map(|&cell| grid.centre(cell)).collect();
-        let offsets: Vec<u32> =
-            (0..=cells).map(|cell| homes.partition_point(|&home| home < cell) as u32).collect();
+        let movers: Vec<Mover<DVec2>> = (0..sources.len())
+            .filter(|&row| sources[row] != targets[row])
+            .map(|row| Mover {
+                row: row as u32,
+                source: sources[row],
+                position: DVec2::ZERO,
+                velocity: DVec2::ZERO,
+            })
+            .collect();
         let ids: Vec<u32> = (0..sources.len() as u32).collect();
         let (mut targets, mut counts) = (targets.to_vec(), CountingSort::default());
         counts.count(&targets, cells as usize);
         let mut moves = Moves {
             grid: &grid,
             capacity,
-            offsets: &offsets,
-            positions: &positions,
+            movers: &movers,
             ids: &ids,
             targets: &mut targets,
             counts: &mut counts,
             ranks: ranks(),
         };
-        let rejected = moves.reject_surplus().iter().map(|rejected| rejected.row).collect();
+        let rejected = moves.reject_surplus().iter().map(|r| movers[r.mover as usize].row).collect();
         (rejected, (0..cells).map(|cell| counts.total(cell)).collect())
     }
 
@@ -223,16 +213,12 @@ mod tests {
     proptest! {
         #[test]
         fn rejections_are_the_least_fixed_point(
-            mut plan in proptest::collection::vec((0_u32..12, 0_u32..12, 0_u32..12, any::<bool>()), 0..60),
+            plan in proptest::collection::vec((0_u32..12, 0_u32..12), 0..60),
             capacity in 1_u32..7,
         ) {
-            plan.sort_by_key(|&(home, ..)| home);
-            // Half of the grains have been displaced; cells far apart stand in different words of a set.
-            let homes: Vec<u32> = plan.iter().map(|&(home, ..)| 6 * home).collect();
-            let sources: Vec<u32> =
-                plan.iter().map(|&(home, other, _, moved)| 6 * if moved { other } else { home }).collect();
-            let targets: Vec<u32> = plan.iter().map(|&(.., target, _)| 6 * target).collect();
-            let (rejected, held) = rejected(72, capacity, &homes, &sources, &targets);
+            // Cells far apart stand in different words of a set.
+            let (sources, targets): (Vec<u32>, Vec<u32>) = plan.into_iter().map(|(from, to)| (6 * from, 6 * to)).unzip();
+            let (rejected, held) = rejected(72, capacity, &sources, &targets);
             prop_assert_eq!(&rejected, &by_sweeps(72, capacity, &sources, &targets));
             for cell in 0..72_u32 {
                 let before = sources.iter().filter(|&&s| s == cell).count() as u32;
@@ -243,6 +229,6 @@ mod tests {
 
     #[test]
     fn a_swap_between_full_cells_is_admitted() {
-        assert!(rejected(2, 2, &[0, 0, 1, 1], &[0, 0, 1, 1], &[1, 0, 0, 1]).0.is_empty());
+        assert!(rejected(2, 2, &[0, 0, 1, 1], &[1, 0, 0, 1]).0.is_empty());
     }
 }

@@ -3,7 +3,7 @@
 //! Cells are treated like grains with the mass and mean velocity of what they hold. The energy
 //! that an inelastic cell collision takes returns as heat, so that momentum and energy are kept.
 
-use super::number_set::{NumberSet, WORD};
+use super::number_set::NumberSet;
 use super::parallel;
 use crate::engine::report::Counts;
 use crate::matter::gas::Gas;
@@ -116,7 +116,7 @@ impl<V: Vector> CellCollisions<V> {
         if full_cells.peek().is_none() {
             return;
         }
-        let mut cells = NumberSet::of(vec![0; number_of_cells.div_ceil(WORD as usize)]);
+        let mut cells = NumberSet::below(number_of_cells);
         for cell in full_cells {
             cells.insert(cell);
             let beside = neighbours(gas.grid(), cell).map(|(_, other)| other);

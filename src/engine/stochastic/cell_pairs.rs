@@ -14,6 +14,7 @@ use super::relative_speeds::RelativeSpeeds;
 use super::tally::Tally;
 use crate::law::impact::Impacts;
 use crate::law::restitution::Restitution;
+use crate::matter::fetch::fetch_all;
 use crate::matter::grid::Grid;
 use crate::random::{Phase, PhaseStreams, Stream};
 use crate::space::Vector;
@@ -52,6 +53,8 @@ pub(crate) struct Displaced<V> {
 struct Draws {
     candidates: Vec<Candidate>,
     cells: Vec<Drawn>,
+    /// What the block draws from here on.
+    random: Stream,
 }
 
 /// A candidate pair.
@@ -66,13 +69,11 @@ struct Candidate {
 }
 
 /// A cell that has drawn candidates.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Drawn {
     number: u32,
     /// Bound on the squared relative speeds, before any collision [length²/time²].
     bound: f64,
-    /// What the cell draws from here on.
-    random: Stream,
 }
 
 impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
@@ -103,22 +104,22 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         tally: &mut Tally<V>,
         mut displace: impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
-        let mut draws = self.draw(block, offsets, tally);
-        tally.counts.candidates += draws.candidates.len() as u64;
-        for &Candidate { pair, cell, threshold } in &draws.candidates {
+        let Draws { candidates, cells, mut random } = self.draw(block, offsets, tally);
+        tally.counts.candidates += candidates.len() as u64;
+        for &Candidate { pair, cell, threshold } in &candidates {
             let pair = (pair.0 as usize, pair.1 as usize);
             let relative = block.velocities[pair.0] - block.velocities[pair.1];
             let square = relative.length_squared();
             if square <= threshold {
                 continue;
             }
-            let drawn = &mut draws.cells[cell as usize];
+            let Drawn { number, bound } = cells[cell as usize];
             let mut times = 1;
-            if square > drawn.bound {
-                times += drawn.excess(square);
+            if square > bound {
+                times += excess(square / bound, &mut random);
             }
             for _ in 0..times {
-                self.collide_pair(drawn, pair, block, tally, &mut displace);
+                self.collide_pair(number, pair, block, tally, &mut random, &mut displace);
             }
         }
     }
@@ -127,14 +128,15 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
     #[inline(always)]
     fn collide_pair(
         &self,
-        cell: &mut Drawn,
+        cell: u32,
         pair: (usize, usize),
         block: &mut Block<'_, V>,
         tally: &mut Tally<V>,
+        random: &mut Stream,
         displace: &mut impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
         let relative = block.velocities[pair.0] - block.velocities[pair.1];
-        let elastic = self.impacts.exchange(relative, &mut cell.random);
+        let elastic = self.impacts.exchange(relative, random);
         let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
         block.velocities[pair.0] += change;
         block.velocities[pair.1] -= change;
@@ -142,7 +144,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         let after = relative + change * 2.0;
         if let Some(shift) = self.displacement.shift(change, after) {
             let carried = self.mass * after.dot(shift);
-            if displace(Displaced { cell: cell.number, pair, shift, carried }, block.positions) {
+            if displace(Displaced { cell, pair, shift, carried }, block.positions) {
                 tally.counts.carried_momentum += carried;
             }
         }
@@ -153,12 +155,18 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         let mut draws = Draws {
             candidates: Vec::with_capacity(block.ids.len()),
             cells: Vec::with_capacity(block.cells.len()),
+            random: self.streams.stream(u64::from(block.cells.start)),
         };
+        // Displacements will go to positions in no order.
+        let fetches_positions = !matches!(self.displacement, Displacement::None);
         for cell in block.cells.clone() {
             let rows = block.rows_of(cell, offsets);
             let grains = rows.len() as u32;
             if grains < 2 {
                 continue;
+            }
+            if fetches_positions {
+                fetch_all(&block.positions[rows.clone()]);
             }
             let speeds = RelativeSpeeds::of(&block.velocities[rows.clone()]);
             if !speeds.sum_over_pairs.is_finite() {
@@ -168,12 +176,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
             let pairs = self.enskog.of(cell, rows.len()) * f64::from(grains) * f64::from(grains - 1);
             tally.collision_rate += self.expected_rate(pairs, grains, speeds);
             let expected = pairs * self.candidates_per_speed * speeds.largest_square.sqrt();
-            let drawn = Drawn {
-                number: cell,
-                bound: speeds.largest_square,
-                random: self.streams.stream(u64::from(cell)),
-            };
-            draws.add(rows, drawn, expected);
+            draws.add(rows, Drawn { number: cell, bound: speeds.largest_square }, expected);
         }
         draws
     }
@@ -200,11 +203,11 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
 impl Draws {
     /// Draws the candidates of one more cell, `expected` of them on the average.
     #[inline(always)]
-    fn add(&mut self, rows: Range<usize>, mut drawn: Drawn, expected: f64) {
+    fn add(&mut self, rows: Range<usize>, drawn: Drawn, expected: f64) {
         let cell = self.cells.len() as u32;
         let (first_row, grains) = (rows.start as u32, rows.len() as u32);
-        for _ in 0..drawn.random.round(expected) {
-            let ((first, second), z) = drawn.random.pair_and_uniform(grains);
+        for _ in 0..self.random.round(expected) {
+            let ((first, second), z) = self.random.pair_and_uniform(grains);
             let pair = (first_row + first as u32, first_row + second as u32);
             self.candidates.push(Candidate { pair, cell, threshold: z * z * drawn.bound });
         }
@@ -212,12 +215,10 @@ impl Draws {
     }
 }
 
-impl Drawn {
-    /// How many times more a pair collides that earlier collisions of the step have made faster than the bound: on
-    /// the average by how much |v_i − v_j|/v_max exceeds one.
-    #[cold]
-    #[inline(never)]
-    fn excess(&mut self, square: f64) -> u64 {
-        self.random.round((square / self.bound).sqrt() - 1.0)
-    }
+/// How many times more a pair collides that earlier collisions of the step have made faster than the bound: on
+/// the average by how much |v_i − v_j|/v_max exceeds one. `ratio` is the square of that.
+#[cold]
+#[inline(never)]
+fn excess(ratio: f64, random: &mut Stream) -> u64 {
+    random.round(ratio.sqrt() - 1.0)
 }

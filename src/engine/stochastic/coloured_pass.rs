@@ -12,7 +12,7 @@ use super::blocks::{Block, cut};
 use super::cell_pairs::Displaced;
 use super::parallel;
 use super::rules::DisplacementRule;
-use super::wishes::Places;
+use super::wishes::{Places, Wish};
 use crate::matter::columns::Columns;
 use crate::matter::grid::Grid;
 use crate::random::PhaseStreams;
@@ -24,7 +24,7 @@ pub(crate) struct Contested<'a, V> {
     pub(crate) cell: u32,
     /// The row from which the rows of the wishes count.
     pub(crate) first_row: usize,
-    pub(crate) wishes: &'a [Displaced<V>],
+    pub(crate) wishes: &'a [Wish<V>],
 }
 
 /// The parts of the pass.
@@ -103,7 +103,8 @@ impl<V: Vector> ColouredPass<'_, V> {
         let cells = &mut slab.targets[rows];
         cells.fill(cell);
         let mut carried = 0.0;
-        for &Displaced { pair: (i, j), shift, carried: momentum, .. } in contested.wishes {
+        for Wish { asked, .. } in contested.wishes {
+            let &Displaced { pair: (i, j), shift, carried: momentum, .. } = asked;
             let full = self.occupancy[cell as usize].load(Relaxed) >= self.places.capacity;
             if !full && self.displace(home, (i - start, j - start), shift, positions, cells) {
                 carried += momentum;

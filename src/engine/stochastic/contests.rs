@@ -3,12 +3,10 @@
 //! Arrivals at a cell are ranked. The accepted ones are always a prefix of that ranking and only ever become
 //! fewer, so every order of work ends at the same set: threads may take a region of cells each.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
-use super::number_set::{NumberSet, WORD};
-use crate::matter::grid::Grid;
+use super::movers::Mover;
+use super::number_set::NumberSet;
 use crate::matter::sort::{CountingSort, FEWEST_GRAINS, REMOVED};
 use crate::random::PhaseStreams;
 use crate::space::Vector;
@@ -16,11 +14,8 @@ use crate::space::Vector;
 /// The moves that grains want to make.
 #[derive(Clone, Copy)]
 pub(crate) struct Wanted<'a, V: Vector> {
-    pub(crate) grid: &'a Grid<V>,
-    /// Where the rows of each cell begin, `[cell + 1]`; grains may have been displaced into other cells since.
-    pub(crate) offsets: &'a [u32],
-    /// `[row]`: positions before the move [length].
-    pub(crate) positions: &'a [V],
+    /// Those who want to change their cell, in rising order of rows.
+    pub(crate) movers: &'a [Mover<V>],
     /// `[row]`: the cell each grain goes to.
     pub(crate) targets: &'a [u32],
     /// `[row]`.
@@ -47,7 +42,8 @@ struct Contest {
 /// A grain that wants to enter a contested cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrival {
-    row: u32,
+    /// Its place among the movers.
+    mover: u32,
     /// The contest of the cell it comes from, or [`CALM`].
     from: u32,
 }
@@ -63,17 +59,16 @@ struct Region<'a> {
     first_arrival: u32,
     /// Cells above capacity.
     queue: Vec<u32>,
-    /// Rows of those who have lost.
+    /// Movers who have lost.
     losers: Vec<u32>,
 }
 
 impl<V: Vector> Wanted<'_, V> {
-    /// Rows of the least set of moves without which no cell gets above its capacity; `above` are the cells that
-    /// would be, were all accepted.
-    pub(crate) fn losers(&self, counts: &CountingSort, above: &[u32]) -> NumberSet {
-        let spans = self.spans();
-        let cells = self.contested(counts, above, &spans);
-        let (mut contests, mut arrivals) = self.contests(counts, &cells, &spans);
+    /// The least set of movers without whose moves no cell gets above its capacity, in rising order; `above` are the
+    /// cells that would be, were all accepted.
+    pub(crate) fn losers(&self, counts: &CountingSort, number_of_cells: usize, above: &[u32]) -> Vec<u32> {
+        let cells = self.contested(counts, number_of_cells, above);
+        let (mut contests, mut arrivals) = self.contests(counts, &cells);
         let mut regions = regions(&mut contests, &mut arrivals, self.capacity);
         let mut news: Vec<Vec<u32>> = regions.iter().map(|_| Vec::new()).collect();
         loop {
@@ -92,89 +87,44 @@ impl<V: Vector> Wanted<'_, V> {
                 break;
             }
         }
-        let mut rows = NumberSet::of(vec![0; self.targets.len().div_ceil(WORD as usize)]);
-        regions.iter().flat_map(|region| &region.losers).for_each(|&row| rows.insert(row));
-        rows
-    }
-
-    /// All cells, cut into spans of whole words and of about the same number of grains.
-    fn spans(&self) -> Vec<Range<u32>> {
-        let cells = self.offsets.len() - 1;
-        let grains = self.targets.len();
-        let parts = if grains < FEWEST_GRAINS { 1 } else { rayon::current_num_threads() };
-        let end = |part: usize| {
-            let cell = self.offsets.partition_point(|&offset| (offset as usize) < grains * part / parts);
-            if part == parts { cells as u32 } else { cell as u32 / WORD * WORD }
-        };
-        (0..parts).map(|part| if part == 0 { 0 } else { end(part) }..end(part + 1)).collect()
+        let mut losers: Vec<u32> = regions.iter().flat_map(|region| &region.losers).copied().collect();
+        losers.sort_unstable();
+        losers
     }
 
     /// Cells that would be above capacity if none of their own grains left, whatever becomes of the others.
-    fn contested(&self, counts: &CountingSort, above: &[u32], spans: &[Range<u32>]) -> NumberSet {
-        let find = |span: &Range<u32>| {
-            // Cells that displaced grains would leave.
-            let mut others = Vec::new();
-            let words = span.clone().step_by(WORD as usize).map(|first| {
-                let cells = first..(first + WORD).min(span.end);
-                let mut word = 0_u64;
-                if self.offsets[cells.start as usize] == self.offsets[cells.end as usize] {
-                    return word;
-                }
-                for cell in cells {
-                    let leaving = self.leaving(cell, &mut others);
-                    let is_contested = leaving > 0 && counts.total(cell) + leaving > self.capacity;
-                    word |= u64::from(is_contested) << (cell % WORD);
-                }
-                word
-            });
-            (words.collect::<Vec<u64>>(), others)
-        };
-        let (words, others): (Vec<_>, Vec<_>) = self.each(spans, find).into_iter().unzip();
-        let mut cells = NumberSet::of(words.concat());
-        above.iter().chain(others.iter().flatten()).for_each(|&cell| cells.insert(cell));
+    fn contested(&self, counts: &CountingSort, number_of_cells: usize, above: &[u32]) -> NumberSet {
+        let mut leaving = vec![0_u32; number_of_cells];
+        self.movers.iter().for_each(|mover| leaving[mover.source as usize] += 1);
+        let mut cells = NumberSet::below(number_of_cells);
+        above.iter().for_each(|&cell| cells.insert(cell));
+        for &Mover { source, .. } in self.movers {
+            // Each cell is looked at once.
+            let leaving = std::mem::take(&mut leaving[source as usize]);
+            if leaving > 0 && counts.total(source) + leaving > self.capacity {
+                cells.insert(source);
+            }
+        }
         cells.number();
         cells
     }
 
-    /// How many grains of `cell` want to leave it; where one has been displaced to `others` and wants to leave from there,
-    /// that cell is noted.
-    fn leaving(&self, cell: u32, others: &mut Vec<u32>) -> u32 {
-        let mut leaving = 0;
-        for row in self.rows(cell) {
-            let source = self.source(row);
-            if self.targets[row] == source {
-                continue;
-            }
-            if source == cell {
-                leaving += 1;
-            } else {
-                others.push(source);
-            }
-        }
-        leaving
-    }
-
     /// The contests at `cells`, and all arrivals there.
-    fn contests(
-        &self,
-        counts: &CountingSort,
-        cells: &NumberSet,
-        spans: &[Range<u32>],
-    ) -> (Vec<Contest>, Vec<Arrival>) {
-        let find = |span: &Range<u32>| {
+    fn contests(&self, counts: &CountingSort, cells: &NumberSet) -> (Vec<Contest>, Vec<Arrival>) {
+        let find = |(place, movers): (usize, &[Mover<V>])| {
             let mut found: Vec<(u32, Arrival)> = Vec::new();
-            for row in self.offsets[span.start as usize]..self.offsets[span.end as usize] {
-                let target = self.targets[row as usize];
+            for (mover, Mover { row, source, .. }) in (place * FEWEST_GRAINS..).zip(movers) {
+                let target = self.targets[*row as usize];
                 let contest = if target == REMOVED { None } else { cells.place(target) };
                 let Some(contest) = contest else { continue };
-                let source = self.source(row as usize);
-                if target != source {
-                    found.push((contest, Arrival { row, from: cells.place(source).unwrap_or(CALM) }));
-                }
+                found.push((
+                    contest,
+                    Arrival { mover: mover as u32, from: cells.place(*source).unwrap_or(CALM) },
+                ));
             }
             found
         };
-        let found = self.each(spans, find);
+        let found: Vec<Vec<_>> = self.movers.par_chunks(FEWEST_GRAINS).enumerate().map(find).collect();
         let mut contests: Vec<Contest> =
             cells.iter().map(|cell| Contest { total: counts.total(cell), ..Contest::default() }).collect();
         for &(contest, _) in found.iter().flatten() {
@@ -194,21 +144,9 @@ impl<V: Vector> Wanted<'_, V> {
         (contests, arrivals)
     }
 
-    fn rows(&self, cell: u32) -> Range<usize> {
-        self.offsets[cell as usize] as usize..self.offsets[cell as usize + 1] as usize
-    }
-
-    /// The cell that a grain would leave.
-    fn source(&self, row: usize) -> u32 {
-        self.grid.cell_of(self.positions[row])
-    }
-
-    fn each<T: Send>(&self, spans: &[Range<u32>], work: impl Fn(&Range<u32>) -> T + Sync + Send) -> Vec<T> {
-        if spans.len() > 1 {
-            spans.par_iter().with_max_len(1).map(work).collect()
-        } else {
-            spans.iter().map(work).collect()
-        }
+    /// The grain of a mover.
+    fn id(&self, mover: u32) -> u32 {
+        self.ids[self.movers[mover as usize].row as usize]
     }
 }
 
@@ -262,8 +200,8 @@ impl Region<'_> {
             self.contests[here].accepted -= rejected;
             let first = (first - self.first_arrival) as usize;
             for loser in first + (accepted - rejected) as usize..first + accepted as usize {
-                let Arrival { row, from } = self.arrivals[loser];
-                self.losers.push(row);
+                let Arrival { mover, from } = self.arrivals[loser];
+                self.losers.push(mover);
                 if from == CALM {
                     continue;
                 }
@@ -294,7 +232,7 @@ impl Region<'_> {
         let arrivals = &mut self.arrivals[first..first + accepted as usize];
         if arrivals.len() > 1 {
             arrivals.sort_by_cached_key(|arrival| {
-                let id = wanted.ids[arrival.row as usize];
+                let id = wanted.id(arrival.mover);
                 (wanted.ranks.hash(u64::from(id)), id)
             });
         }
@@ -312,13 +250,14 @@ mod tests {
     fn regions_end_at_the_same_set() {
         let (cells, per_cell, capacity) = (9000_u32, 4_u32, 5_u32);
         let mut random = Streams::new(8).at(0, Phase::Source).stream(0);
-        let offsets: Vec<u32> = (0..=cells).map(|cell| cell * per_cell).collect();
-        let grid = Grid::new(DVec2::ZERO, DVec2::new(f64::from(cells), 1.0), &[cells, 1], &[false, false]);
         // Some have been displaced into the next cell.
-        let home = |row: u32| (row / per_cell + u32::from(row.is_multiple_of(9))).min(cells - 1);
-        let positions: Vec<DVec2> = (0..cells * per_cell).map(|row| grid.centre(home(row))).collect();
+        let source = |row: u32| (row / per_cell + u32::from(row.is_multiple_of(9))).min(cells - 1);
         let targets: Vec<u32> = (0..cells * per_cell)
             .map(|row| (row / per_cell + (3.0 * random.uniform()) as u32).min(cells - 1))
+            .collect();
+        let movers: Vec<Mover<DVec2>> = (0..cells * per_cell)
+            .filter(|&row| targets[row as usize] != source(row))
+            .map(|row| Mover { row, source: source(row), position: DVec2::ZERO, velocity: DVec2::ZERO })
             .collect();
         let ids: Vec<u32> = (0..targets.len() as u32).rev().collect();
         let losers = |threads: usize| {
@@ -327,17 +266,8 @@ mod tests {
                 let mut counts = CountingSort::default();
                 counts.count(&targets, cells as usize);
                 let ranks = Streams::new(3).at(5, Phase::Admission);
-                let wanted = Wanted {
-                    grid: &grid,
-                    offsets: &offsets,
-                    positions: &positions,
-                    targets: &targets,
-                    ids: &ids,
-                    capacity,
-                    ranks,
-                };
-                let above = counts.cells_above(capacity);
-                wanted.losers(&counts, &above).iter().collect::<Vec<u32>>()
+                let wanted = Wanted { movers: &movers, targets: &targets, ids: &ids, capacity, ranks };
+                wanted.losers(&counts, cells as usize, &counts.cells_above(capacity))
             })
         };
         let alone = losers(1);

@@ -6,18 +6,18 @@ use super::Step;
 use super::admission::{Moves, Rejected};
 use super::blocks::{Block, Part, parts, rows_of};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
-use super::cell_pairs::{Displaced, PairCollisions};
+use super::cell_pairs::PairCollisions;
 use super::coloured_pass::{ColouredPass, Contested};
+use super::entry::Entry;
 use super::flight::Flights;
-use super::held::Held;
 use super::laws::{Laws, Room};
+use super::movers::Mover;
 use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
-use super::wishes::{Places, Wishes};
+use super::wishes::{Places, Wish, Wishes};
 use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::Restitution;
-use crate::matter::columns::Columns;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::grid::Grid;
 use crate::matter::sort::{Counter, REMOVED};
@@ -32,17 +32,17 @@ pub(crate) struct ExcludedVolume<V: Vector> {
     pub(crate) entry_probability: Option<PiecewiseLinear>,
     cell_collisions: CellCollisions<V>,
     /// `[block]`: displacements that the collisions of the step ask for.
-    wishes: Vec<Vec<Displaced<V>>>,
+    wishes: Vec<Vec<Wish<V>>>,
     /// `[cell]`: grains that would enter if every wish came true.
     visitors: Vec<AtomicU32>,
     /// `[cell]`: grains now; kept only where cells get crowded.
     occupancy: Vec<AtomicU32>,
-    /// Grains whose move is rejected.
-    held: Held,
+    /// `[part]`: grains that want to change their cell.
+    movers: Vec<Vec<Mover<V>>>,
 }
 
 /// The blocks that one thread takes, each with its wishes.
-type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Displaced<V>>)>;
+type WishingPart<'a, V> = Vec<(Block<'a, V>, &'a mut Vec<Wish<V>>)>;
 
 impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
@@ -53,7 +53,7 @@ impl<V: Vector> ExcludedVolume<V> {
             wishes: Vec::new(),
             visitors: Vec::new(),
             occupancy: Vec::new(),
-            held: Held::default(),
+            movers: Vec::new(),
         }
     }
 
@@ -94,14 +94,13 @@ impl<V: Vector> ExcludedVolume<V> {
         let wishes =
             Wishes { places: self.places(laws, grid, offsets, capacity, step), visitors: &self.visitors };
         let collisions = PairCollisions::new(laws, grid, offsets, step);
-        parallel::copy(&columns.positions, &mut space.spare.positions);
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
         let results = parallel::each(parts.into_iter(), |part| {
             let blocks = part.into_iter().map(|(mut block, list)| {
                 let mut tally = Tally::default();
                 list.clear();
                 collisions.collide(&mut block, offsets, &mut tally, |displaced, _| {
-                    list.push(displaced);
+                    list.push(Wish::new(displaced));
                     false
                 });
                 (tally, wishes.grant(list, &mut block))
@@ -145,13 +144,12 @@ impl<V: Vector> ExcludedVolume<V> {
         let places = self.places(laws, grid, offsets, capacity, step);
         let wishes = Wishes { places, visitors: &self.visitors };
         let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
-        let (occupancy, originals) = (&self.occupancy, &space.spare.positions);
+        let occupancy = &self.occupancy;
         let results = parallel::each(parts.into_iter(), |part| {
             let mut contested = Vec::new();
-            let carried = part.into_iter().map(|(mut block, list)| {
-                let originals = &originals[block.rows()];
-                wishes.keep_calm(list, &mut block, originals, occupancy, &mut contested)
-            });
+            let carried = part
+                .into_iter()
+                .map(|(mut block, list)| wishes.keep_calm(list, &mut block, occupancy, &mut contested));
             (carried.collect::<Vec<_>>(), contested)
         });
         let (mut contested, mut carried) = (Vec::new(), 0.0);
@@ -163,7 +161,7 @@ impl<V: Vector> ExcludedVolume<V> {
         carried + ColouredPass { places, occupancy }.run(&contested, columns, &mut space.cells, order)
     }
 
-    /// Every grain says where it would go; nothing is decided yet.
+    /// All grains fly; those who change their cell remember where they were.
     pub(crate) fn advect<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
@@ -176,10 +174,13 @@ impl<V: Vector> ExcludedVolume<V> {
         let flights = Flights::new(laws, grid, step);
         let parts = parts(offsets, columns, &mut space.cells);
         let counters = space.sort.begin(rows_of(&parts), grid.number_of_cells());
-        let tallies = parallel::each(parts.into_iter().zip(counters), |(part, mut counter)| {
+        self.movers.resize_with(counters.len(), Vec::new);
+        let work = parts.into_iter().zip(counters).zip(&mut self.movers);
+        let tallies = parallel::each(work, |((part, mut counter), movers)| {
+            movers.clear();
             let blocks = part.blocks.into_iter().map(|mut block| {
                 let mut tally = Tally::default();
-                announce(&flights, &mut block, &mut counter, &mut tally);
+                fly(&flights, &mut block, &mut counter, movers, &mut tally);
                 tally
             });
             blocks.collect::<Vec<_>>()
@@ -198,106 +199,96 @@ impl<V: Vector> ExcludedVolume<V> {
         step: Step,
         tally: &mut Tally<V>,
     ) {
-        let flights = Flights::new(laws, gas.grid(), step);
-        let columns = gas.columns();
+        let capacity = self.capacity(gas);
+        let (grid, _, columns) = gas.parts_mut();
+        let flights = Flights::new(laws, grid, step);
+        let (first, others) = self.movers.split_first_mut().expect("there is a part at least");
+        others.iter_mut().for_each(|others| first.append(others));
+        if let Some(probability) = &self.entry_probability {
+            let grain_share = laws.grain.volume::<V>() / grid.cell_volume();
+            let random = laws.streams.at(step.number, Phase::Admission);
+            let entry = Entry { probability, grain_share, number_of_cells: grid.number_of_cells(), random };
+            entry.refuse(&flights, first, columns, space, tally);
+        }
+        let movers = &*first;
         let mut moves = Moves {
-            grid: gas.grid(),
-            capacity: self.capacity(gas),
-            offsets: gas.offsets(),
-            positions: &columns.positions,
+            grid,
+            capacity,
+            movers,
             ids: &columns.ids,
             targets: &mut space.cells,
             counts: &mut space.sort,
             ranks: laws.streams.at(step.number, Phase::Admission),
         };
-        self.held.clear(columns.len());
-        let volume = laws.grain.volume::<V>() / gas.grid().cell_volume();
-        let refused = self.entry_probability.as_ref().map(|entry| moves.refuse_by_chance(entry, volume));
         let mut rejected = match self.rules.admission {
             Admission::Strict => moves.reject_surplus(),
             Admission::Thesis => moves.reject_at_full_cells(),
         };
-        let refused = refused.unwrap_or_default();
-        tally.counts.rejected_moves += (rejected.len() + refused.len()) as u64;
-        for &Rejected { row, .. } in rejected.iter().chain(&refused) {
-            take_back_wall_momentum(&flights, columns, row, tally);
+        tally.counts.rejected_moves += rejected.len() as u64;
+        for &Rejected { mover, .. } in &rejected {
+            take_back_wall_momentum(&flights, movers[mover as usize], moves.ids, tally);
         }
+        let mut slid = Vec::new();
         if self.rules.admission == Admission::Strict {
             for axis in axes_with_gravity_last(laws.gravity) {
-                for row in moves.slide(axis, &mut rejected) {
-                    self.held.slide(row, axis);
-                }
+                slid.extend(moves.slide(axis, &mut rejected).into_iter().map(|mover| (mover, axis)));
             }
         }
-        rejected.iter().chain(&refused).for_each(|rejected| self.held.hold(rejected.row));
-        self.held.order();
-        for row in self.held.rows() {
-            if flights.is_out(self.held.held_position(&flights, columns, row as usize)) {
+        let mut held = Vec::with_capacity(slid.len() + rejected.len());
+        for (mover, axis) in slid {
+            movers[mover as usize].slide(axis, &mut columns.positions, &mut columns.velocities);
+            held.push(mover);
+        }
+        for Rejected { mover, .. } in rejected {
+            movers[mover as usize].stay(&mut columns.positions, &mut columns.velocities);
+            held.push(mover);
+        }
+        for mover in held {
+            let row = movers[mover as usize].row;
+            if flights.is_out(columns.positions[row as usize]) {
                 moves.send(row, REMOVED);
                 tally.counts.removed += 1;
             }
         }
     }
-
-    /// Moves all grains to where they may go, into cell order.
-    pub(crate) fn sort<R: Restitution>(
-        &self,
-        laws: &Laws<V, R>,
-        gas: &mut Gas<V>,
-        space: &mut SortSpace<V>,
-        step: Step,
-    ) {
-        let grid = gas.grid().clone();
-        let flights = Flights::new(laws, &grid, step);
-        gas.sort_counted(space, |columns, row, slot| self.held.put(&flights, columns, row, slot));
-    }
 }
 
-/// Where the grains of a block want to go.
-fn announce<V: Vector, R: Restitution>(
+/// Moves the grains of a block.
+fn fly<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
     block: &mut Block<'_, V>,
     counter: &mut Counter<'_>,
+    movers: &mut Vec<Mover<V>>,
     tally: &mut Tally<V>,
 ) {
+    let rows = block.ids.len();
+    let (positions, velocities) = (&mut block.positions[..rows], &mut block.velocities[..rows]);
+    let cells = &mut block.targets[..rows];
     let mut speeds = Speeds::default();
-    for row in 0..block.ids.len() {
-        let (there, gained) = flights.free(block.positions[row], block.velocities[row]);
+    for row in 0..rows {
+        let (position, velocity) = (positions[row], velocities[row]);
+        let (mut there, mut gained) = flights.free(position, velocity);
         let target = if flights.is_free(there) {
-            speeds.note(gained);
             flights.cell_inside(there)
         } else {
-            meet_the_edge(flights, block, row, tally)
+            (there, gained) = (position, velocity);
+            flights.meet_the_edge((&mut there, &mut gained, block.ids[row]), &mut tally.counts)
         };
-        block.targets[row] = target;
+        speeds.note(gained);
         counter.add(target);
+        let source = std::mem::replace(&mut cells[row], target);
+        if target != source {
+            movers.push(Mover { row: (block.first_row + row) as u32, source, position, velocity });
+        }
+        (positions[row], velocities[row]) = (there, gained);
     }
     tally.speeds.add(&speeds);
-}
-
-/// Where a grain gets that comes near an edge.
-#[cold]
-#[inline(never)]
-fn meet_the_edge<V: Vector, R: Restitution>(
-    flights: &Flights<'_, V, R>,
-    block: &Block<'_, V>,
-    row: usize,
-    tally: &mut Tally<V>,
-) -> u32 {
-    let (position, velocity) = (block.positions[row], block.velocities[row]);
-    let flight = flights.fly_to_the_edge(position, velocity, block.ids[row], &mut tally.counts.wall_momentum);
-    tally.speeds.note(flight.velocity);
-    if flight.left {
-        tally.counts.removed += 1;
-        return REMOVED;
-    }
-    flights.cell_of(flight.position)
 }
 
 /// Gives every block the wishes of its place.
 fn with_wishes<'a, V: Vector>(
     parts: Vec<Part<'a, V>>,
-    wishes: &'a mut Vec<Vec<Displaced<V>>>,
+    wishes: &'a mut Vec<Vec<Wish<V>>>,
     grid: &Grid<V>,
 ) -> Vec<WishingPart<'a, V>> {
     wishes.resize_with(Block::<V>::number_of(grid.number_of_cells() as u32 - 1) + 1, Vec::new);
@@ -317,12 +308,12 @@ fn with_wishes<'a, V: Vector>(
 }
 
 /// The wishes of a cell.
-fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Displaced<V>>], offsets: &[u32]) -> Contested<'a, V> {
+fn contest<'a, V: Vector>(cell: u32, wishes: &'a [Vec<Wish<V>>], offsets: &[u32]) -> Contested<'a, V> {
     let number = Block::<V>::number_of(cell);
     let first_cell = Block::<V>::first_cell(number);
     let list = &wishes[number];
-    let first = list.partition_point(|wish| wish.cell < cell);
-    let last = list.partition_point(|wish| wish.cell <= cell);
+    let first = list.partition_point(|wish| wish.asked.cell < cell);
+    let last = list.partition_point(|wish| wish.asked.cell <= cell);
     Contested { cell, first_row: offsets[first_cell as usize] as usize, wishes: &list[first..last] }
 }
 
@@ -333,14 +324,14 @@ fn start_counts(counts: &mut Vec<AtomicU32>, values: impl Iterator<Item = u32>) 
 }
 
 /// A rejected move has not met the walls it would have met.
-fn take_back_wall_momentum<V: Vector, R: Restitution>(
+pub(crate) fn take_back_wall_momentum<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
-    columns: &Columns<V>,
-    row: u32,
+    mover: Mover<V>,
+    ids: &[u32],
     tally: &mut Tally<V>,
 ) {
-    let (row, mut momentum) = (row as usize, Default::default());
-    flights.fly(columns.positions[row], columns.velocities[row], columns.ids[row], &mut momentum);
+    let mut momentum = Default::default();
+    flights.fly(mover.position, mover.velocity, ids[mover.row as usize], &mut momentum);
     for (axis, sides) in momentum.iter().enumerate() {
         for (side, &given) in sides.iter().enumerate() {
             tally.counts.wall_momentum[axis][side] -= given;

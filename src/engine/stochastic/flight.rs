@@ -2,9 +2,11 @@
 
 use super::Step;
 use super::laws::{Laws, wall_place, wall_speed};
+use crate::engine::report::Counts;
 use crate::law::boundary::{AxisBoundary, Face, Wall, WallKind};
 use crate::law::restitution::Restitution;
 use crate::matter::grid::Grid;
+use crate::matter::sort::REMOVED;
 use crate::random::{Phase, PhaseStreams, Stream};
 use crate::space::Vector;
 
@@ -88,6 +90,23 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
             return Flight { position: there, velocity: gained, left: false };
         }
         self.fly_to_the_edge(position, velocity, id, momentum)
+    }
+
+    /// Moves one grain that comes near an edge; returns the cell it goes to.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn meet_the_edge(
+        &self,
+        (position, velocity, id): (&mut V, &mut V, u32),
+        counts: &mut Counts<V>,
+    ) -> u32 {
+        let flight = self.fly_to_the_edge(*position, *velocity, id, &mut counts.wall_momentum);
+        (*position, *velocity) = (flight.position, flight.velocity);
+        if flight.left {
+            counts.removed += 1;
+            return REMOVED;
+        }
+        self.cell_of(flight.position)
     }
 
     /// The cell that holds `position`.

@@ -7,10 +7,9 @@ use super::flight::Flights;
 use super::laws::{Laws, Room};
 use super::parallel;
 use super::tally::{Speeds, Tally};
-use crate::engine::report::Counts;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
-use crate::matter::sort::{Counter, REMOVED};
+use crate::matter::sort::Counter;
 use crate::space::Vector;
 
 /// The parts of a gas step.
@@ -80,24 +79,11 @@ impl<V: Vector, R: Restitution> GasPass<'_, V, R> {
                 speeds.note(velocity);
             } else {
                 let grain = (&mut positions[row], &mut velocities[row], block.ids[row]);
-                targets[row] = self.meet_the_edge(grain, &mut tally.counts);
+                targets[row] = self.flights.meet_the_edge(grain, &mut tally.counts);
                 counter.add(targets[row]);
                 speeds.note(velocities[row]);
             }
         }
         tally.speeds.add(&speeds);
-    }
-
-    /// Moves one grain that comes near an edge; returns the cell it goes to.
-    #[cold]
-    #[inline(never)]
-    fn meet_the_edge(&self, (position, velocity, id): (&mut V, &mut V, u32), counts: &mut Counts<V>) -> u32 {
-        let flight = self.flights.fly_to_the_edge(*position, *velocity, id, &mut counts.wall_momentum);
-        (*position, *velocity) = (flight.position, flight.velocity);
-        if flight.left {
-            counts.removed += 1;
-            return REMOVED;
-        }
-        self.flights.cell_of(flight.position)
     }
 }

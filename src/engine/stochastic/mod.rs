@@ -11,11 +11,12 @@ mod coloured_pass;
 mod contests;
 mod displacement;
 mod enskog;
+mod entry;
 mod excluded_volume;
 mod flight;
 mod gas_pass;
-mod held;
 pub mod laws;
+mod movers;
 mod number_set;
 mod parallel;
 mod relative_speeds;
@@ -109,7 +110,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("admission");
         volume.admit(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("sort");
-        volume.sort(&self.laws, gas, &mut self.space, step);
+        gas.sort_counted(&mut self.space, copy);
         tally
     }
 }

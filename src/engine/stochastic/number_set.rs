@@ -1,7 +1,7 @@
 //! Sets of small numbers, as bits: cells, or rows.
 
 /// Numbers in a word.
-pub(crate) const WORD: u32 = u64::BITS;
+const WORD: u32 = u64::BITS;
 
 /// A set of numbers below a bound, which also counts them off in rising order.
 #[derive(Debug, Default)]
@@ -12,15 +12,9 @@ pub(crate) struct NumberSet {
 }
 
 impl NumberSet {
-    /// The set of these bits, `[number / 64]`.
-    pub(crate) fn of(words: Vec<u64>) -> Self {
-        NumberSet { words, before: Vec::new() }
-    }
-
-    /// Whether it was made for no number at all.
-    #[inline(always)]
-    pub(crate) fn has_no_room(&self) -> bool {
-        self.words.is_empty()
+    /// The empty set, of numbers below `bound`.
+    pub(crate) fn below(bound: usize) -> Self {
+        NumberSet { words: vec![0; bound.div_ceil(WORD as usize)], before: Vec::new() }
     }
 
     /// Puts `number` in.
@@ -49,12 +43,6 @@ impl NumberSet {
         (bits & 1 == 1).then(|| self.before[word] + lower.count_ones())
     }
 
-    /// Whether `number` is in the set.
-    #[inline(always)]
-    pub(crate) fn contains(&self, number: u32) -> bool {
-        self.words[(number / WORD) as usize] >> (number % WORD) & 1 == 1
-    }
-
     /// The members in rising order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = u32> {
         self.words.iter().enumerate().flat_map(|(place, &word)| {
@@ -74,7 +62,7 @@ mod tests {
 
     #[test]
     fn members_come_in_rising_order_and_know_their_places() {
-        let mut set = NumberSet::of(vec![0; 4]);
+        let mut set = NumberSet::below(256);
         let members = [0, 5, 63, 64, 130, 255];
         members.iter().rev().for_each(|&member| set.insert(member));
         assert_eq!(set.number(), 6);
@@ -82,7 +70,6 @@ mod tests {
         for number in 0..256 {
             let place = members.iter().position(|&member| member == number);
             assert_eq!(set.place(number), place.map(|place| place as u32));
-            assert_eq!(set.contains(number), place.is_some());
         }
     }
 }

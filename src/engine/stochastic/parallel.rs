@@ -56,13 +56,3 @@ pub(crate) fn map_numbered<T: Sync, R: Send>(
         items.par_iter().enumerate().with_min_len(64).map(work).collect()
     }
 }
-
-/// Copies a column.
-pub(crate) fn copy<T: Copy + Send + Sync>(from: &[T], to: &mut [T]) {
-    if from.len() < FEWEST_GRAINS {
-        to.copy_from_slice(from);
-    } else {
-        let chunks = to.par_chunks_mut(FEWEST_GRAINS).zip(from.par_chunks(FEWEST_GRAINS));
-        chunks.for_each(|(to, from)| to.copy_from_slice(from));
-    }
-}

@@ -25,6 +25,35 @@ pub(crate) struct Places<'a, V: Vector> {
     pub(crate) rule: DisplacementRule,
 }
 
+/// A displacement that a collision asks for, and what has been done about it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wish<V> {
+    pub(crate) asked: Displaced<V>,
+    is_granted: bool,
+    /// Positions of the partners before [length].
+    before: [V; 2],
+    /// The cells that they have entered, or [`NO_CELL`].
+    entered: [u32; 2],
+}
+
+/// No cell has this number.
+const NO_CELL: u32 = u32::MAX;
+
+impl<V: Vector> Wish<V> {
+    /// One that nobody has looked at.
+    pub(crate) fn new(asked: Displaced<V>) -> Self {
+        Wish { asked, is_granted: false, before: [V::ZERO; 2], entered: [NO_CELL; 2] }
+    }
+
+    /// Takes back what was granted last.
+    fn take_back(&self, positions: &mut [V]) {
+        if self.is_granted {
+            let (i, j) = self.asked.pair;
+            [positions[i], positions[j]] = self.before;
+        }
+    }
+}
+
 /// What came of the wishes of a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Granted {
@@ -72,81 +101,74 @@ impl<V: Vector> Places<'_, V> {
 impl<V: Vector> Wishes<'_, V> {
     /// Grants all wishes of a block, in their order, as if nobody else had any, and counts the visitors that
     /// this sends to other cells.
-    pub(crate) fn grant(&self, wishes: &[Displaced<V>], block: &mut Block<'_, V>) -> Granted {
+    pub(crate) fn grant(&self, wishes: &mut [Wish<V>], block: &mut Block<'_, V>) -> Granted {
         for cell in block.cells.clone() {
             let rows = block.rows_of(cell, self.places.offsets);
             block.targets[rows].fill(cell);
         }
         let mut granted = Granted::default();
-        let mut home = (u32::MAX, [0; 3]);
-        for &wish in wishes {
-            if self.places.occupancy(wish.cell) >= self.places.capacity {
+        let mut home = (NO_CELL, [0; 3]);
+        for wish in wishes {
+            let cell = wish.asked.cell;
+            if self.places.occupancy(cell) >= self.places.capacity {
                 continue;
             }
-            if home.0 != wish.cell {
-                home = (wish.cell, self.places.grid.coordinates(wish.cell));
+            if home.0 != cell {
+                home = (cell, self.places.grid.coordinates(cell));
             }
-            let enter = |cell: u32| {
-                let before = self.visitors[cell as usize].fetch_add(1, Relaxed);
-                granted.crowded |= self.places.occupancy(cell) + before + 1 >= self.places.capacity;
-            };
-            if self.displace(home.1, wish, block.positions, block.targets, enter) {
-                granted.carried += wish.carried;
+            self.displace(home.1, wish, block.positions, block.targets);
+            if wish.is_granted {
+                granted.carried += wish.asked.carried;
+            }
+            for &entered in wish.entered.iter().filter(|&&entered| entered != NO_CELL) {
+                let before = self.visitors[entered as usize].fetch_add(1, Relaxed);
+                granted.crowded |= self.places.occupancy(entered) + before + 1 >= self.places.capacity;
             }
         }
         granted
     }
 
-    /// Displaces both partners, if no wall is in the way; `enter` is told of cells that a partner enters.
+    /// Displaces both partners, if no wall is in the way.
     #[inline(always)]
-    fn displace(
-        &self,
-        home: [u32; 3],
-        wish: Displaced<V>,
-        positions: &mut [V],
-        cells: &mut [u32],
-        mut enter: impl FnMut(u32),
-    ) -> bool {
-        let (i, j) = wish.pair;
-        let first = self.places.place(home, positions[i] + wish.shift);
-        let second = self.places.place(home, positions[j] - wish.shift);
-        let (Some((first, cell_i)), Some((second, cell_j))) = (first, second) else { return false };
-        for (row, cell) in [(i, cell_i), (j, cell_j)] {
-            if cell != cells[row] {
-                cells[row] = cell;
-                enter(cell);
-            }
-        }
+    fn displace(&self, home: [u32; 3], wish: &mut Wish<V>, positions: &mut [V], cells: &mut [u32]) {
+        let Displaced { pair: (i, j), shift, .. } = wish.asked;
+        let first = self.places.place(home, positions[i] + shift);
+        let second = self.places.place(home, positions[j] - shift);
+        let (Some((first, cell_i)), Some((second, cell_j))) = (first, second) else { return };
+        wish.is_granted = true;
+        wish.before = [positions[i], positions[j]];
+        wish.entered = [(i, cell_i), (j, cell_j)].map(|(row, cell)| {
+            let is_new = std::mem::replace(&mut cells[row], cell) != cell;
+            if is_new { cell } else { NO_CELL }
+        });
         (positions[i], positions[j]) = (first, second);
-        true
     }
 
     /// Where cells have turned out crowded: what has been granted to calm cells stays, and `occupancy` `[cell]` follows;
-    /// other cells get their `original` positions back and are added to `contested`. Returns what the displacements of
-    /// calm cells carry.
+    /// other cells get their grains back to where they were and are added to `contested`. Returns what the
+    /// displacements of calm cells carry.
     pub(crate) fn keep_calm(
         &self,
-        wishes: &[Displaced<V>],
+        wishes: &[Wish<V>],
         block: &mut Block<'_, V>,
-        original: &[V],
         occupancy: &[AtomicU32],
         contested: &mut Vec<u32>,
     ) -> f64 {
         let mut carried = 0.0;
-        let mut draft = original.to_vec();
-        for wishes in wishes.chunk_by(|a, b| a.cell == b.cell) {
-            let cell = wishes[0].cell;
+        for wishes in wishes.chunk_by(|a, b| a.asked.cell == b.asked.cell) {
+            let cell = wishes[0].asked.cell;
             let rows = block.rows_of(cell, self.places.offsets);
-            block.targets[rows.clone()].fill(cell);
             if self.places.occupancy(cell) >= self.places.capacity {
                 continue;
             }
-            let Some(granted) = self.calm(wishes, &mut draft, block.targets) else {
-                block.positions[rows.clone()].copy_from_slice(&original[rows]);
+            if !self.is_calm(wishes) {
+                wishes.iter().rev().for_each(|wish| wish.take_back(block.positions));
+                block.targets[rows].fill(cell);
                 contested.push(cell);
                 continue;
-            };
-            carried += granted;
+            }
+            let granted = wishes.iter().filter(|wish| wish.is_granted);
+            carried += granted.map(|wish| wish.asked.carried).sum::<f64>();
             for &now in block.targets[rows].iter().filter(|&&now| now != cell) {
                 occupancy[cell as usize].fetch_sub(1, Relaxed);
                 occupancy[now as usize].fetch_add(1, Relaxed);
@@ -155,21 +177,12 @@ impl<V: Vector> Wishes<'_, V> {
         carried
     }
 
-    /// What the displacements of one cell carry, if its wishes are granted in every order of all cells.
-    fn calm(&self, wishes: &[Displaced<V>], positions: &mut [V], cells: &mut [u32]) -> Option<f64> {
+    /// Whether these wishes of one cell are granted in every order of all cells.
+    fn is_calm(&self, wishes: &[Wish<V>]) -> bool {
         let most = |cell: u32| self.places.occupancy(cell) + self.visitors[cell as usize].load(Relaxed);
-        let home = wishes[0].cell;
-        let mut calm = most(home) < self.places.capacity;
-        let coordinates = self.places.grid.coordinates(home);
-        let mut carried = 0.0;
-        for &wish in wishes {
-            let enter = |entered| {
-                calm &= self.places.rule == DisplacementRule::Thesis || most(entered) <= self.places.capacity;
-            };
-            if self.displace(coordinates, wish, positions, cells, enter) {
-                carried += wish.carried;
-            }
-        }
-        calm.then_some(carried)
+        let is_bounded = self.places.rule != DisplacementRule::Thesis;
+        let mut entered = wishes.iter().flat_map(|wish| wish.entered).filter(|&cell| cell != NO_CELL);
+        most(wishes[0].asked.cell) < self.places.capacity
+            && !(is_bounded && entered.any(|cell| most(cell) > self.places.capacity))
     }
 }
