@@ -86,6 +86,22 @@ fn a_dense_elastic_gas_keeps_to_molecular_chaos() {
 }
 
 #[test]
+fn spheres_are_calibrated_like_disks() {
+    let place = tempfile::tempdir().unwrap();
+    let side = (400.0 * std::f64::consts::FRAC_PI_6 / 0.3_f64).cbrt();
+    let text = format!(
+        "dimension = 3\n[engine]\nkind = \"hsmc\"\ncell_size = 2.0\n[domain]\nsize = [{side}, {side}, {side}]\n\
+         [particles]\ncount = 400\nrestitution = 1.0\n[initial]\nvelocities = {{ maxwell = 1.0 }}\n\
+         [run]\ncollisions_per_particle = 150\n"
+    );
+    let found = calibrated(&text, place.path(), 4, &Overrides::default()).unwrap();
+    let (c, error) = mean_c(&found);
+    assert!(c.abs() < 3.0 * error && error < 0.02, "{c} ± {error}");
+    assert_eq!((found.dimension, found.cell.len()), (3, 3));
+    assert!(found.entries.len() > 3);
+}
+
+#[test]
 fn a_dilute_gas_lets_grains_in() {
     let place = tempfile::tempdir().unwrap();
     let text = gas(2000, 0.01, 1.0, 10.0);
