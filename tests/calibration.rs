@@ -98,7 +98,9 @@ fn spheres_are_calibrated_like_disks() {
     let (c, error) = mean_c(&found);
     assert!(c.abs() < 3.0 * error && error < 0.02, "{c} ± {error}");
     assert_eq!((found.dimension, found.cell.len()), (3, 3));
-    assert!(found.entries.len() > 3);
+    // Cells of five grains on the average: few numbers of grains have attempts enough, and each lets most of them in.
+    assert!(found.entries.len() > 1);
+    assert!(found.entries.iter().all(|entry| (0.5..1.0).contains(&entry.probability.value)));
 }
 
 #[test]
