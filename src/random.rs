@@ -13,7 +13,7 @@ pub enum Phase {
     Collisions = 1,
     /// Impact parameters and heat of cell–cell collisions.
     CellCollisions = 2,
-    /// Ranking of arrivals at a full cell.
+    /// Ranking of arrivals at a full cell; who gets into a cell by chance.
     Admission = 3,
     /// Order of the colours of the displacement pass.
     Colours = 4,

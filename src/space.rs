@@ -80,6 +80,17 @@ pub trait Vector:
 
     /// ∫ from 0 to `b` over impact parameters in diameters, of 1/(1 − c b²) in 2D and b/(1 − c b²) in 3D.
     fn impact_integral(c: f64, b: f64) -> f64;
+    /// The inverse of the distribution of impact parameters p ∝ 1/(1 − c b²) in 2D, b/(1 − c b²) in 3D, in diameters:
+    /// b of this density for `u` uniform in [−1, 1]; in 2D with the sign of `u`. c < 1 may be negative.
+    ///
+    /// 2D b = tanh(u artanh √c)/√c, for c < 0 tan(u arctan √−c)/√−c; 3D b² = (1 − (1 − c)^|u|)/c.
+    fn impact_quantile(c: f64, u: f64) -> f64;
+    /// −(g·n)n as [`Vector::exchange`], for the impact parameter `b` in [−1, 1]: n = (b g⊥ − √(1 − b²) g)/|g| with
+    /// g⊥ from [`Vector::across`].
+    fn exchange_at(relative: Self, b: f64, random: &mut Stream) -> Self {
+        let cosine_squared = 1.0 - b * b;
+        relative.across(random) * (b * cosine_squared.sqrt()) - relative * cosine_squared
+    }
     /// `spin` + `factor` · `change`.
     #[inline]
     fn add_spin(mut spin: Self::Spin, change: Self::Spin, factor: f64) -> Self::Spin {
@@ -153,6 +164,15 @@ impl Vector for DVec2 {
             _ if c > 0.0 => libm::atanh(root * b) / root,
             _ => libm::atan(root * b) / root,
         }
+    }
+    fn impact_quantile(c: f64, u: f64) -> f64 {
+        let root = c.abs().sqrt();
+        let b = match c {
+            _ if c.abs() < 1e-7 => u + c * u * (1.0 - u * u) / 3.0,
+            _ if c > 0.0 => libm::tanh(u * libm::atanh(root)) / root,
+            _ => libm::tan(u * libm::atan(root)) / root,
+        };
+        b.clamp(-1.0, 1.0)
     }
     #[inline(always)]
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {
@@ -230,6 +250,14 @@ impl Vector for DVec3 {
             return 0.5 * b * b + 0.25 * c * b * b * b * b;
         }
         -0.5 * libm::log1p(-c * b * b) / c
+    }
+    fn impact_quantile(c: f64, u: f64) -> f64 {
+        let u = u.abs();
+        let square = match c {
+            _ if c.abs() < 1e-7 => u + 0.5 * c * u * (1.0 - u),
+            _ => -libm::expm1(u * libm::log1p(-c)) / c,
+        };
+        square.clamp(0.0, 1.0).sqrt()
     }
     #[inline(always)]
     fn from_fn(mut component: impl FnMut(usize) -> f64) -> Self {

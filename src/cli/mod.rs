@@ -2,6 +2,7 @@
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "the command line is what prints")]
 
+mod calibrate;
 mod check;
 mod input;
 mod progress;
@@ -48,6 +49,7 @@ Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 130 interrupted.";
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::RunArguments),
+    Calibrate(calibrate::CalibrateArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -56,6 +58,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };

@@ -19,6 +19,9 @@ pub trait Engine<V: Vector>: Send {
         laps: &mut dyn Laps,
     ) -> Result<StepReport<V>, EngineError>;
 
+    /// Told before a step how many collisions per particle the run has had, for laws that change with them.
+    fn collided(&mut self, _per_particle: f64) {}
+
     /// Everything beside the gas that the next step reads, as numbers to be saved.
     fn state(&self) -> EngineState;
 

@@ -32,39 +32,42 @@ impl ImpactParameter {
         let samples = Samples::new(IMPACT_BINS);
         setting.counts_impacts.then_some(ImpactParameter { integral: V::impact_integral, samples })
     }
+}
 
-    /// Logarithm of the probability of `counts` `[bin]`.
-    fn log_likelihood(&self, counts: &[f64], c: f64) -> f64 {
-        let whole = (self.integral)(c, 1.0);
-        let term = |(bin, count): (usize, &f64)| {
-            let inside =
-                (self.integral)(c, (bin + 1) as f64 * WIDTH) - (self.integral)(c, bin as f64 * WIDTH);
-            count * libm::log(inside / whole)
-        };
-        counts.iter().enumerate().filter(|(_, count)| **count > 0.0).map(term).sum()
-    }
+/// The most likely c of `counts` `[bin]` of |b|/d over [0, 1], and its error from the curvature of the likelihood;
+/// `None` without collisions or where c would leave its range.
+pub fn most_likely_c<V: Vector>(counts: &[f64]) -> Option<Estimate> {
+    fit(V::impact_integral, counts)
+}
 
-    /// The most likely c, and its error from the curvature of the likelihood; `None` without collisions or where c
-    /// would leave its range.
-    fn fit(&self, counts: &[f64]) -> Option<Estimate> {
-        let likelihood = |c: f64| self.log_likelihood(counts, c);
-        let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let (mut low, mut high) = RANGE;
-        for _ in 0..STEPS {
-            let reach = ratio * (high - low);
-            let (left, right) = (high - reach, low + reach);
-            (low, high) = if likelihood(left) > likelihood(right) { (low, right) } else { (left, high) };
-        }
-        let c = 0.5 * (low + high);
-        let margin = 1e-3 * (1.0 - c).min(1.0);
-        let is_inside = c - margin > RANGE.0 && c + margin < RANGE.1;
-        if !is_inside || counts.iter().sum::<f64>() < 1.0 {
-            return None;
-        }
-        let bend = likelihood(c - margin) - 2.0 * likelihood(c) + likelihood(c + margin);
-        let curvature = -bend / (margin * margin);
-        Some(Estimate { value: c, standard_error: (curvature > 0.0).then(|| 1.0 / curvature.sqrt()) })
+/// Logarithm of the probability of `counts` `[bin]`.
+fn log_likelihood(integral: fn(f64, f64) -> f64, counts: &[f64], c: f64) -> f64 {
+    let whole = integral(c, 1.0);
+    let term = |(bin, count): (usize, &f64)| {
+        let inside = integral(c, (bin + 1) as f64 * WIDTH) - integral(c, bin as f64 * WIDTH);
+        count * libm::log(inside / whole)
+    };
+    counts.iter().enumerate().filter(|(_, count)| **count > 0.0).map(term).sum()
+}
+
+fn fit(integral: fn(f64, f64) -> f64, counts: &[f64]) -> Option<Estimate> {
+    let likelihood = |c: f64| log_likelihood(integral, counts, c);
+    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = RANGE;
+    for _ in 0..STEPS {
+        let reach = ratio * (high - low);
+        let (left, right) = (high - reach, low + reach);
+        (low, high) = if likelihood(left) > likelihood(right) { (low, right) } else { (left, high) };
     }
+    let c = 0.5 * (low + high);
+    let margin = 1e-3 * (1.0 - c).min(1.0);
+    let is_inside = c - margin > RANGE.0 && c + margin < RANGE.1;
+    if !is_inside || counts.iter().sum::<f64>() < 1.0 {
+        return None;
+    }
+    let bend = likelihood(c - margin) - 2.0 * likelihood(c) + likelihood(c + margin);
+    let curvature = -bend / (margin * margin);
+    Some(Estimate { value: c, standard_error: (curvature > 0.0).then(|| 1.0 / curvature.sqrt()) })
 }
 
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> [f64; IMPACT_BINS] {
@@ -107,7 +110,7 @@ impl<V: Vector> Measure<V> for ImpactParameter {
                 counts.iter().map(|count| count.sqrt() * norm).collect(),
             ],
         };
-        (vec![profile], vec![figure("impact_c", self.fit(&counts))])
+        (vec![profile], vec![figure("impact_c", fit(self.integral, &counts))])
     }
 
     fn memory(&self) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! Pictures and pages: what a log and its summary look like to a reader.
 
 mod axis;
+pub mod calibration;
 mod colour;
 mod energy_plots;
 mod escape;

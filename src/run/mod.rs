@@ -191,7 +191,8 @@ fn go_on<V: Vector>(
     }
 }
 
-fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
+/// How `simulation` looks from outside.
+pub(crate) fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
     Status {
         progress: simulation.progress(),
         time: simulation.gas().time(),
@@ -203,7 +204,7 @@ fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
 }
 
 /// The gas that the scenario begins with, read from a log if it says so.
-fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::Gas<V>, RunError> {
+pub(crate) fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::Gas<V>, RunError> {
     let saved = match &scenario.initial.positions {
         InitialPositions::Log(path) => {
             let state = last_state::<V>(path).map_err(RunError::InitialLog)?;

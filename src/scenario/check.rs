@@ -8,6 +8,7 @@ use super::initial;
 use super::model::{AnyScenario, EngineKind, InitialPositions, Scenario};
 use super::{cost, warnings};
 use crate::law::kinetic_theory::mean_free_path;
+use crate::law::piecewise::PiecewiseLinear;
 use crate::space::Vector;
 
 /// What a scenario means.
@@ -51,6 +52,7 @@ fn check_in_space<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> 
     check.add("engine", scenario.engine.kind.name().to_owned());
     check.matter(scenario);
     check.cells(scenario);
+    check.laws(scenario);
     check.time(scenario);
     check.cost(scenario);
     check.warnings = warnings::warnings(scenario, available);
@@ -109,6 +111,23 @@ impl Check {
         };
         let above = above.map_or_else(|| unknown.to_owned(), |cells| cells.to_string());
         self.add("cells that start above it", above);
+    }
+
+    /// Laws that calibrations measure, where the engine uses them.
+    fn laws<V: Vector>(&mut self, scenario: &Scenario<V>) {
+        let engine = &scenario.engine;
+        let range = |curve: &PiecewiseLinear| {
+            let values = || curve.points().map(|[_, value]| value);
+            let (low, high) =
+                (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            if low == high { rounded(low) } else { format!("{} to {}", rounded(low), rounded(high)) }
+        };
+        if let Some(c) = engine.impact_law.table().filter(|_| !engine.kind.is_event_driven()) {
+            self.add("impact parameters", format!("p(b) ∝ 1/(1 − c b²) with c = {}", range(c)));
+        }
+        if let Some(p) = engine.entry_probability.as_ref().filter(|_| engine.kind == EngineKind::Hsmc) {
+            self.add("entry probability", format!("{} by volume fraction", range(p)));
+        }
     }
 
     fn time<V: Vector>(&mut self, scenario: &Scenario<V>) {
@@ -287,6 +306,16 @@ mod tests {
         assert!((4000.0..10_804.0).contains(&pipe), "{pipe}");
         let crossing = ["engine.time_step={crossing=0.5}"];
         assert!(fact("sedimentation", &crossing, "expected steps").contains(" to "));
+    }
+
+    #[test]
+    fn measured_laws_are_told_where_they_apply() {
+        let curve = "engine.impact_parameter={collisions_per_particle=[0,9],c=[0,0.4]}";
+        assert_eq!(fact("cooling", &[curve], "impact parameters"), "p(b) ∝ 1/(1 − c b²) with c = 0 to 0.4");
+        assert_eq!(fact("cooling", &[], "impact parameters"), "");
+        assert_eq!(fact("cooling", &[curve, "engine.kind=event-driven"], "impact parameters"), "");
+        let entry = "engine.hsmc.entry_probability={volume_fraction=[0],probability=[0.5]}";
+        assert_eq!(fact("cooling", &[entry], "entry probability"), "0.5 by volume fraction");
     }
 
     #[test]

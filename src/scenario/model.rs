@@ -7,6 +7,8 @@ pub use crate::engine::stochastic::rules::{
     Admission, DisplacementRule, EnskogFactor, HsmcRules, TimeStep, Transfer,
 };
 use crate::law::boundary::Boundary;
+use crate::law::impact::ImpactLaw;
+use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::RestitutionLaw;
 use crate::law::roughness::Roughness;
 use crate::law::source::Source;
@@ -83,8 +85,12 @@ pub struct EngineChoice {
     pub enskog_factor: EnskogFactor,
     /// How the collisional transfer of momentum is made (CBA, HSMC).
     pub transfer: Transfer,
+    /// Impact parameters of pair collisions (DSMC, CBA, HSMC).
+    pub impact_law: ImpactLaw,
     /// Rules of HSMC.
     pub hsmc: HsmcRules,
+    /// HSMC: p(ν) of entering a cell of volume fraction ν; `None` where only a lack of room keeps grains out.
+    pub entry_probability: Option<PiecewiseLinear>,
     /// Rules of the event-driven engine.
     pub event_driven: EventDrivenRules,
 }

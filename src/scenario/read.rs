@@ -152,6 +152,7 @@ fn resolve_engine(engine: EngineTable, restitution: f64) -> Option<EngineChoice>
         time_step: engine.time_step?,
         enskog_factor: engine.enskog_factor?,
         transfer: engine.transfer?,
+        impact_law: engine.impact_law?,
         hsmc: HsmcRules {
             maximum_volume_fraction: hsmc.maximum_volume_fraction?,
             cell_restitution,
@@ -159,6 +160,7 @@ fn resolve_engine(engine: EngineTable, restitution: f64) -> Option<EngineChoice>
             admission: hsmc.admission?,
             displacement: hsmc.displacement?,
         },
+        entry_probability: hsmc.entry_probability?,
         event_driven: engine.event_driven?,
     })
 }

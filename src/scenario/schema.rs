@@ -17,13 +17,31 @@ pub(super) const ROOT: &[&str] = &[
     "units",
 ];
 /// `[engine]`.
-pub(super) const ENGINE: &[&str] =
-    &["kind", "cell_size", "time_step", "enskog_factor", "transfer", "hsmc", "event_driven"];
+pub(super) const ENGINE: &[&str] = &[
+    "kind",
+    "cell_size",
+    "time_step",
+    "enskog_factor",
+    "transfer",
+    "impact_parameter",
+    "hsmc",
+    "event_driven",
+];
 /// `engine.time_step`.
 pub(super) const TIME_STEP: &[&str] = &["fixed", "collisions_per_particle", "crossing"];
 /// `[engine.hsmc]`.
-pub(super) const HSMC: &[&str] =
-    &["maximum_volume_fraction", "cell_restitution", "sweeps", "admission", "displacement"];
+pub(super) const HSMC: &[&str] = &[
+    "maximum_volume_fraction",
+    "cell_restitution",
+    "sweeps",
+    "admission",
+    "displacement",
+    "entry_probability",
+];
+/// `engine.impact_parameter`, where it is a table; the last names a file that holds the others.
+pub(super) const IMPACT_PARAMETER: &[&str] = &["collisions_per_particle", "c", "table"];
+/// `engine.hsmc.entry_probability`, where it is a table; the last names a file that holds the others.
+pub(super) const ENTRY_PROBABILITY: &[&str] = &["volume_fraction", "probability", "table"];
 /// `[engine.event_driven]`.
 pub(super) const EVENT_DRIVEN: &[&str] = &["structure", "collapse"];
 /// `engine.event_driven.collapse`, where it is a table.
@@ -62,7 +80,9 @@ pub(super) const UNITS: &[&str] = &["length", "mass", "time"];
 pub(super) const TABLES: &[(&str, &[&str])] = &[
     ("engine", ENGINE),
     ("engine.time_step", TIME_STEP),
+    ("engine.impact_parameter", IMPACT_PARAMETER),
     ("engine.hsmc", HSMC),
+    ("engine.hsmc.entry_probability", ENTRY_PROBABILITY),
     ("engine.event_driven", EVENT_DRIVEN),
     ("engine.event_driven.collapse", COLLAPSE),
     ("domain", DOMAIN),
@@ -104,5 +124,7 @@ pub(super) const EITHER_OR: &[(&str, &[&[&str]])] = &[
     ("particles", &[&["diameter", "mass"], &["species"]]),
     ("record", &[&["frames", "spacing"], &["every"]]),
     ("engine.time_step", &[&["fixed"], &["collisions_per_particle"], &["crossing"]]),
+    ("engine.impact_parameter", &[&["collisions_per_particle", "c"], &["table"]]),
+    ("engine.hsmc.entry_probability", &[&["volume_fraction", "probability"], &["table"]]),
     ("initial.velocities", &[&["maxwell"], &["uniform"]]),
 ];

@@ -6,6 +6,7 @@ use crate::engine::event_driven::{self, EventDriven};
 use crate::engine::stochastic::Stochastic;
 use crate::engine::stochastic::laws::{DenseGas, Laws};
 use crate::law::boundary::Boundary;
+use crate::law::impact::{ImpactLaw, Impacts};
 use crate::law::restitution::{Constant, Restitution, RestitutionLaw};
 use crate::random::Streams;
 use crate::scenario::model::{EngineKind, HsmcRules, Scenario};
@@ -67,6 +68,7 @@ fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
     let laws = Laws {
         grain: scenario.grain,
         restitution,
+        impacts: Impacts::UNIFORM,
         gravity,
         boundary: *boundary,
         dense: dense_gas(scenario),
@@ -77,7 +79,13 @@ fn with_law<V: Vector, R: Restitution + std::fmt::Debug>(
         cell_restitution: cell_restitution.unwrap_or(scenario.engine.hsmc.cell_restitution),
         ..scenario.engine.hsmc
     });
-    Box::new(Stochastic::new(laws, scenario.engine.time_step, rules))
+    // What equilibrates is elastic, and an elastic gas keeps to molecular chaos.
+    let impact_law =
+        if cell_restitution.is_none() { scenario.engine.impact_law.clone() } else { ImpactLaw::UNIFORM };
+    let engine = Stochastic::new(laws, scenario.engine.time_step, rules)
+        .with_impact_law(impact_law)
+        .with_entry_probability(scenario.engine.entry_probability.clone());
+    Box::new(engine)
 }
 
 /// What CBA and HSMC add to DSMC.

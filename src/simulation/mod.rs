@@ -118,6 +118,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
         }
         let grains = self.gas.len();
         let horizon = if self.is_event_driven() { self.next_stop(horizon) } else { Horizon::NONE };
+        self.engine.collided(self.totals.collisions_per_particle);
         let report = self.engine.step(&mut self.gas, horizon, laps)?;
         self.totals.add(&report, grains);
         laps.start("measures");

@@ -8,6 +8,7 @@ use grainflow::engine::stochastic::rules::{
 };
 use grainflow::engine::{Engine, Horizon, NoLaps};
 use grainflow::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
+use grainflow::law::impact::Impacts;
 use grainflow::law::restitution::Constant;
 use grainflow::matter::gas::Gas;
 use grainflow::matter::grain::Grain;
@@ -119,6 +120,7 @@ impl Plan {
         let laws = Laws {
             grain: GRAIN,
             restitution: Constant(self.restitution),
+            impacts: Impacts::UNIFORM,
             gravity: V::ZERO,
             boundary: self.boundary(),
             dense: self.dense::<V>(),

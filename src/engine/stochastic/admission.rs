@@ -49,15 +49,7 @@ struct Bid {
 impl<V: Vector> Moves<'_, V> {
     /// The thesis' rule: a cell is open to any number when below capacity before the moves.
     pub(crate) fn reject_at_full_cells(&mut self) -> Vec<Rejected> {
-        let mut occupancy: Vec<u32> =
-            (0..self.grid.number_of_cells() as u32).map(|cell| self.counts.total(cell)).collect();
-        for mover in self.movers {
-            occupancy[mover.source as usize] += 1;
-            let target = self.targets[mover.row as usize];
-            if target != REMOVED {
-                occupancy[target as usize] -= 1;
-            }
-        }
+        let occupancy = occupancy_before(self.movers, self.targets, self.counts, self.grid.number_of_cells());
         let refused = |mover: &u32| {
             let wanted = self.targets[self.movers[*mover as usize].row as usize];
             wanted != REMOVED && occupancy[wanted as usize] >= self.capacity
@@ -121,6 +113,26 @@ impl<V: Vector> Moves<'_, V> {
         rejected.retain(|rejected| others.next_if(|(mover, _)| *mover == rejected.mover).is_none());
         winners.into_iter().map(|(mover, _)| mover).collect()
     }
+}
+
+/// Grains in each cell before the moves of `movers` to their `targets` `[row]`, which `counts` has counted, `[cell]`.
+pub(crate) fn occupancy_before<V: Vector>(
+    movers: &[Mover<V>],
+    targets: &[u32],
+    counts: &CountingSort,
+    number_of_cells: usize,
+) -> Vec<u32> {
+    let mut occupancy: Vec<u32> = (0..number_of_cells as u32).map(|cell| counts.total(cell)).collect();
+    for mover in movers {
+        occupancy[mover.source as usize] += 1;
+    }
+    for mover in movers {
+        let target = targets[mover.row as usize];
+        if target != REMOVED {
+            occupancy[target as usize] -= 1;
+        }
+    }
+    occupancy
 }
 
 /// The cell that the part along `axis` of a diagonal move from `source` to `target` leads

@@ -12,6 +12,7 @@ use super::enskog::EnskogFactors;
 use super::laws::Laws;
 use super::relative_speeds::RelativeSpeeds;
 use super::tally::Tally;
+use crate::law::impact::Impacts;
 use crate::law::restitution::Restitution;
 use crate::matter::fetch::fetch_all;
 use crate::matter::grid::Grid;
@@ -22,6 +23,7 @@ use crate::space::Vector;
 #[derive(Clone, Debug)]
 pub(crate) struct PairCollisions<'a, V: Vector, R> {
     restitution: R,
+    impacts: Impacts,
     mass: f64,
     enskog: EnskogFactors<'a, V>,
     /// σ τ / (2 V_c): candidates per ordered pair and unit of relative speed.
@@ -79,6 +81,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         let per_pair = V::cross_section(laws.grain.diameter) / (2.0 * grid.cell_volume());
         PairCollisions {
             restitution: laws.restitution,
+            impacts: laws.impacts,
             mass: laws.grain.mass,
             enskog: EnskogFactors::new(laws.dense, grid, offsets, laws.grain.diameter),
             candidates_per_speed: per_pair * step.duration,
@@ -133,7 +136,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         displace: &mut impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
         let relative = block.velocities[pair.0] - block.velocities[pair.1];
-        let elastic = V::exchange(relative, random);
+        let elastic = self.impacts.exchange(relative, random);
         let change = elastic * (0.5 * (1.0 + self.restitution.at(elastic.length())));
         block.velocities[pair.0] += change;
         block.velocities[pair.1] -= change;

@@ -8,6 +8,7 @@ use super::blocks::{Block, Part, parts, rows_of};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
 use super::cell_pairs::PairCollisions;
 use super::coloured_pass::{ColouredPass, Contested};
+use super::entry::Entry;
 use super::flight::Flights;
 use super::laws::{Laws, Room};
 use super::movers::Mover;
@@ -15,6 +16,7 @@ use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
 use super::wishes::{Places, Wish, Wishes};
+use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::grid::Grid;
@@ -26,6 +28,8 @@ use crate::space::Vector;
 #[derive(Debug)]
 pub(crate) struct ExcludedVolume<V: Vector> {
     rules: HsmcRules,
+    /// p(ν) of entering a cell, where it is more than a question of room.
+    pub(crate) entry_probability: Option<PiecewiseLinear>,
     cell_collisions: CellCollisions<V>,
     /// `[block]`: displacements that the collisions of the step ask for.
     wishes: Vec<Vec<Wish<V>>>,
@@ -44,6 +48,7 @@ impl<V: Vector> ExcludedVolume<V> {
     pub(crate) fn new(rules: HsmcRules) -> Self {
         ExcludedVolume {
             rules,
+            entry_probability: None,
             cell_collisions: CellCollisions::default(),
             wishes: Vec::new(),
             visitors: Vec::new(),
@@ -199,6 +204,12 @@ impl<V: Vector> ExcludedVolume<V> {
         let flights = Flights::new(laws, grid, step);
         let (first, others) = self.movers.split_first_mut().expect("there is a part at least");
         others.iter_mut().for_each(|others| first.append(others));
+        if let Some(probability) = &self.entry_probability {
+            let grain_share = laws.grain.volume::<V>() / grid.cell_volume();
+            let random = laws.streams.at(step.number, Phase::Admission);
+            let entry = Entry { probability, grain_share, number_of_cells: grid.number_of_cells(), random };
+            entry.refuse(&flights, first, columns, space, tally);
+        }
         let movers = &*first;
         let mut moves = Moves {
             grid,
@@ -316,7 +327,7 @@ fn start_counts(counts: &mut Vec<AtomicU32>, values: impl Iterator<Item = u32>) 
 }
 
 /// A rejected move has not met the walls it would have met.
-fn take_back_wall_momentum<V: Vector, R: Restitution>(
+pub(crate) fn take_back_wall_momentum<V: Vector, R: Restitution>(
     flights: &Flights<'_, V, R>,
     mover: Mover<V>,
     ids: &[u32],

@@ -315,6 +315,7 @@ mod tests {
         Laws {
             grain: Grain { diameter: 1.0, mass: 2.0 },
             restitution: Constant(1.0),
+            impacts: crate::law::impact::Impacts::UNIFORM,
             gravity: DVec2::new(0.0, -gravity),
             boundary,
             dense: None,

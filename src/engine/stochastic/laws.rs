@@ -1,6 +1,7 @@
 //! The laws that a stochastic step obeys, resolved for one engine and one gas.
 
 use crate::law::boundary::{AxisBoundary, Boundary, Face, Wall, WallKind};
+use crate::law::impact::Impacts;
 use crate::law::restitution::Restitution;
 use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
@@ -16,6 +17,8 @@ pub struct Laws<V: Vector, R: Restitution> {
     pub grain: Grain,
     /// Restitution of pair collisions.
     pub restitution: R,
+    /// Impact parameters of pair collisions in the next step.
+    pub impacts: Impacts,
     /// Constant acceleration [length/time²].
     pub gravity: V,
     /// Sides of the box.

@@ -11,6 +11,7 @@ mod coloured_pass;
 mod contests;
 mod displacement;
 mod enskog;
+mod entry;
 mod excluded_volume;
 mod flight;
 mod gas_pass;
@@ -26,6 +27,8 @@ mod wishes;
 
 use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
+use crate::law::impact::ImpactLaw;
+use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace, copy};
 use crate::space::Vector;
@@ -39,6 +42,8 @@ use time_step::{pace, time_step};
 #[derive(Debug)]
 pub struct Stochastic<V: Vector, R: Restitution> {
     laws: Laws<V, R>,
+    /// What `laws.impacts` follow in the course of the run.
+    impact_law: ImpactLaw,
     time_step: TimeStep,
     excluded_volume: Option<ExcludedVolume<V>>,
     space: SortSpace<V>,
@@ -58,11 +63,29 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
     pub fn new(laws: Laws<V, R>, time_step: TimeStep, excluded_volume: Option<HsmcRules>) -> Self {
         Stochastic {
             laws,
+            impact_law: ImpactLaw::UNIFORM,
             time_step,
             excluded_volume: excluded_volume.map(ExcludedVolume::new),
             space: SortSpace::default(),
             state: EngineState { largest_speed: -1.0, collision_rate: -1.0, ..EngineState::default() },
         }
+    }
+
+    /// With impact parameters of pairs that follow `law` in the course of the run.
+    #[must_use]
+    pub fn with_impact_law(mut self, law: ImpactLaw) -> Self {
+        self.laws.impacts = law.at(0.0);
+        self.impact_law = law;
+        self
+    }
+
+    /// HSMC with this probability of entering a cell, of its volume fraction; other engines have no use for it.
+    #[must_use]
+    pub fn with_entry_probability(mut self, probability: Option<PiecewiseLinear>) -> Self {
+        if let Some(volume) = &mut self.excluded_volume {
+            volume.entry_probability = probability;
+        }
+        self
     }
 
     /// DSMC and CBA: pair collisions with displacement and the move, fused over each cell; one sort.
@@ -119,6 +142,10 @@ impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
             return Err(self.not_finite(gas));
         }
         Ok(StepReport { steps: 1, duration, capped, counts: tally.counts, ..StepReport::default() })
+    }
+
+    fn collided(&mut self, per_particle: f64) {
+        self.laws.impacts = self.impact_law.at(per_particle);
     }
 
     fn state(&self) -> EngineState {

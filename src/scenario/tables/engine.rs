@@ -1,5 +1,8 @@
 //! `[engine]`.
 
+use super::calibrated;
+use crate::law::impact::ImpactLaw;
+use crate::law::piecewise::PiecewiseLinear;
 use crate::scenario::bound::Bound;
 use crate::scenario::model::{
     Admission, Cure, DisplacementRule, EngineKind, EnskogFactor, EventDrivenRules, Structure, TimeStep,
@@ -18,6 +21,7 @@ pub(in crate::scenario) struct EngineTable {
     pub(in crate::scenario) time_step: Option<TimeStep>,
     pub(in crate::scenario) enskog_factor: Option<EnskogFactor>,
     pub(in crate::scenario) transfer: Option<Transfer>,
+    pub(in crate::scenario) impact_law: Option<ImpactLaw>,
     pub(in crate::scenario) hsmc: HsmcTable,
     pub(in crate::scenario) event_driven: Option<EventDrivenRules>,
 }
@@ -30,6 +34,8 @@ pub(in crate::scenario) struct HsmcTable {
     pub(in crate::scenario) sweeps: Option<u32>,
     pub(in crate::scenario) admission: Option<Admission>,
     pub(in crate::scenario) displacement: Option<DisplacementRule>,
+    /// `Some(None)` where only a lack of room keeps grains out.
+    pub(in crate::scenario) entry_probability: Option<Option<PiecewiseLinear>>,
 }
 
 /// How the restitution of cell–cell collisions is given.
@@ -85,6 +91,7 @@ pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>) -> EngineTable {
                 &[("momentum-change", Transfer::MomentumChange), ("corrected", Transfer::Corrected)],
             )
             .or(Transfer::MomentumChange),
+        impact_law: calibrated::impact_law(&engine),
         hsmc: hsmc::<V>(&engine),
         event_driven: event_driven(&engine),
     }
@@ -137,6 +144,7 @@ fn hsmc<V: Vector>(engine: &Section<'_>) -> HsmcTable {
                 &[("paired", DisplacementRule::Paired), ("thesis", DisplacementRule::Thesis)],
             )
             .or(DisplacementRule::Paired),
+        entry_probability: calibrated::entry_probability(&table),
     }
 }
 

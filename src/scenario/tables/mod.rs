@@ -1,6 +1,7 @@
 //! One reader for each table of a scenario file.
 
 pub(super) mod boundary;
+pub(super) mod calibrated;
 pub(super) mod engine;
 pub(super) mod head;
 pub(super) mod initial;

@@ -1,0 +1,3 @@
+//! What takes many runs.
+
+pub mod calibrate;
