@@ -16,6 +16,8 @@ use crate::report::{FigureCurve, SweepFigure, SweepReport, with_error};
 const SHOWN_FIGURES: usize = 4;
 /// Rows that the last words show of each.
 const SHOWN_ROWS: usize = 24;
+/// A smaller share of a run is not worth a look at the bar.
+const LEAST_PROGRESS: f64 = 2e-3;
 /// Steps of the bar for each run.
 const BAR_LENGTH: f64 = 1000.0;
 
@@ -159,6 +161,10 @@ impl Progress {
     }
 
     fn tell(&mut self, plan: &Plan, moment: &Moment<'_>) {
+        // Steps may be many and short.
+        if moment.ended.is_none() && moment.progress < self.shares[moment.case] + LEAST_PROGRESS {
+            return;
+        }
         self.shares[moment.case] = moment.progress;
         if let Some(bar) = &self.bar {
             bar.set_position((self.shares.iter().sum::<f64>() * BAR_LENGTH) as u64);

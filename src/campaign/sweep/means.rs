@@ -44,16 +44,22 @@ fn points<'a>(plan: &'a Plan, rows: &'a [Row]) -> Vec<GridPoint<'a>> {
     points
 }
 
+/// Engines in the order in which they first run.
+fn engines(plan: &Plan) -> Vec<&'static str> {
+    let mut engines: Vec<&str> = Vec::new();
+    for case in &plan.cases {
+        let engine = case.scenario.engine().name();
+        if !engines.contains(&engine) {
+            engines.push(engine);
+        }
+    }
+    engines
+}
+
 /// What the figures are plotted against: the first variation, or the engines where there is none.
 fn abscissa(plan: &Plan) -> Abscissa {
     let Some(variation) = plan.variations.first() else {
-        let mut values: Vec<String> = Vec::new();
-        for case in &plan.cases {
-            let engine = case.scenario.engine().name();
-            if !values.iter().any(|value| value == engine) {
-                values.push(engine.to_owned());
-            }
-        }
+        let values: Vec<String> = engines(plan).into_iter().map(str::to_owned).collect();
         let places = (1..=values.len()).map(|k| k as f64).collect();
         return Abscissa { name: "engine".to_owned(), values, places, is_numeric: false };
     };
@@ -64,15 +70,12 @@ fn abscissa(plan: &Plan) -> Abscissa {
     Abscissa { name: leader.path.clone(), values: leader.values.clone(), places, is_numeric }
 }
 
-/// Which value of the abscissa a case has.
-fn place(plan: &Plan, abscissa: &Abscissa, case: &Case) -> usize {
-    match case.places.first() {
-        Some(&place) => place,
-        None => {
-            let engine = case.scenario.engine().name();
-            abscissa.values.iter().position(|value| value == engine).unwrap_or(0).min(plan.cases.len())
-        }
-    }
+/// Where a case stands on the abscissa.
+fn place(abscissa: &Abscissa, case: &Case) -> f64 {
+    let engine = case.scenario.engine().name();
+    let of_engine = || abscissa.values.iter().position(|value| value == engine);
+    let place = case.places.first().copied().or_else(of_engine);
+    abscissa.places[place.expect("without varied keys the abscissa holds the engines of all cases")]
 }
 
 /// What tells the line of a case from the others: further varied keys, and the engine where there are several.
@@ -101,7 +104,7 @@ fn figure(plan: &Plan, abscissa: &Abscissa, points: &[GridPoint<'_>], name: &str
             curves.len() - 1
         });
         if let Some((mean, runs)) = point.mean(name) {
-            let x = abscissa.places[place(plan, abscissa, point.case)];
+            let x = place(abscissa, point.case);
             let Estimate { value, standard_error } = mean;
             curves[index].points.push(MeanPoint { x, value, standard_error, runs });
         }
@@ -155,8 +158,7 @@ fn variation(plan: &Plan) -> String {
         })
         .collect();
     if plan.sweeps_engines {
-        let engines = abscissa(&Plan { variations: Vec::new(), ..plan.clone() }).values;
-        parts.push(format!("engines are {}", engines.join(", ")));
+        parts.push(format!("engines are {}", engines(plan).join(", ")));
     }
     if plan.replicas > 1 {
         parts.push(format!("every case is run with {} seeds", plan.replicas));
@@ -221,11 +223,12 @@ fn point_json(plan: &Plan, point: &GridPoint<'_>) -> Value {
     })
 }
 
-/// A value of a varied key: a number where it is one, else its text.
+/// A value of a varied key: a number or truth value where it is one, else its text.
 fn typed(value: &str) -> Value {
-    value
-        .parse::<f64>()
-        .ok()
-        .filter(|number| number.is_finite())
-        .map_or_else(|| json!(value), |number| json!(number))
+    let number = value.parse::<f64>().ok().filter(|number| number.is_finite());
+    match (number, value.parse::<bool>()) {
+        (Some(number), _) => json!(number),
+        (None, Ok(truth)) => json!(truth),
+        (None, Err(_)) => json!(value),
+    }
 }

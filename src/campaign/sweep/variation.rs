@@ -121,9 +121,12 @@ fn listed(list: &str) -> Result<Vec<String>, String> {
 }
 
 fn logarithmic(range: &str) -> Result<Vec<String>, String> {
-    let ends = split(range, ',')?;
-    if ends.iter().take(2).any(|end| number(end.trim()).is_some_and(|end| end <= 0.0)) {
-        return Err(format!("log({range}) has an end that is not above 0; use linear({range})"));
+    let ends: Vec<f64> =
+        split(range, ',')?.into_iter().take(2).filter_map(|end| number(end.trim())).collect();
+    if let [first, last] = ends[..]
+        && !(first * last > 0.0)
+    {
+        return Err(format!("log({range}) needs ends of the same sign, not 0; use linear({range})"));
     }
     spread(range, |first, last, share| first * (last / first).powf(share))
 }
@@ -192,7 +195,8 @@ mod tests {
         assert_eq!(values("a=linear(0, 1, 5)"), ["0", "0.25", "0.5", "0.75", "1"]);
         assert_eq!(values("a=log(0.1, 100, 4)"), ["0.1", "1", "10", "100"]);
         assert_eq!(values("a=log(1, 2, 3)")[1], "1.41421");
-        assert!(wrong("a=log(0, 1, 3)").contains("not above 0"));
+        assert_eq!(values("a=log(-0.1, -10, 3)"), ["-0.1", "-1", "-10"]);
+        assert!(wrong("a=log(0, 1, 3)").contains("same sign"));
         assert!(wrong("a=linear(0, 1, 1)").contains("no range"));
         assert!(wrong("a=linear(0, 1)").contains("no range"));
     }
