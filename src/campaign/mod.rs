@@ -1,3 +1,4 @@
-//! What takes many runs.
+//! What takes many runs to answer one question.
 
 pub mod calibrate;
+pub mod sweep;

@@ -8,6 +8,7 @@ mod input;
 mod progress;
 mod run;
 mod scenarios;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -41,6 +42,7 @@ struct Arguments {
 const EXAMPLES: &str = "Examples:
   grainflow run heap                             pour a heap, into out/heap-hsmc
   grainflow run shear --set particles.restitution=0.8 --seed 3
+  grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
@@ -50,6 +52,7 @@ Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 130 interrupted.";
 enum Command {
     Run(run::RunArguments),
     Calibrate(calibrate::CalibrateArguments),
+    Sweep(sweep::SweepArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -59,6 +62,7 @@ pub fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };

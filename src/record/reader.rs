@@ -1,5 +1,6 @@
 //! Reads a log: its contents for reports and comparisons, its saved states for resuming.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use prost::Message;
@@ -25,6 +26,20 @@ pub fn read_log(path: &Path) -> Result<RunLog, LogError> {
     let mut contents = Contents::default();
     let cut_off = scan(path, &mut |event| contents.add(event))?;
     Ok(RunLog { cut_off, ..contents.log })
+}
+
+/// Metadata and scenario of the log at `path`, once all its checksums are seen to hold; what follows them is not kept.
+pub fn read_origin(path: &Path) -> Result<(BTreeMap<String, String>, String), LogError> {
+    let (mut metadata, mut scenario) = Default::default();
+    scan(path, &mut |event| {
+        match event {
+            Event::Metadata(found) => metadata = found,
+            Event::Scenario(found) => scenario = found,
+            Event::Channel { .. } | Event::Message { .. } => {}
+        }
+        Ok(())
+    })?;
+    Ok((metadata, scenario))
 }
 
 /// All complete saved states of the log at `path`, in the order of their times.

@@ -22,11 +22,14 @@ mod reference;
 mod scene;
 mod setup;
 mod shear_plots;
+mod sweep;
+mod sweep_model;
 mod wave_plots;
 
 use serde_json::{Map, Value};
 
 pub use picture::grains_png;
+pub use sweep_model::{Abscissa, FigureCurve, MeanPoint, PowerLaw, SweepCase, SweepFigure, SweepReport};
 
 use crate::record::contents::RunLog;
 
@@ -36,4 +39,14 @@ use crate::record::contents::RunLog;
 /// It looks at the log and at the summary alone, so a report can be made again from a stored run.
 pub fn render(log: &RunLog, summary: &Map<String, Value>) -> String {
     page::page(log, summary)
+}
+
+/// `sweep.html`: figures of many runs against what was varied, one page that needs no network.
+pub fn render_sweep(sweep: &SweepReport) -> String {
+    sweep::page(sweep)
+}
+
+/// `value` with its standard error, to the digits that mean something.
+pub fn with_error(value: f64, standard_error: Option<f64>) -> String {
+    number::with_error(value, standard_error)
 }

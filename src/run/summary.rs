@@ -11,6 +11,44 @@ use crate::simulation::limits::EndReason;
 use crate::space::Vector;
 use crate::stopwatch::{Stopwatch, peak_memory_bytes};
 
+/// Keys of numbers that every summary has, whatever the scenario measures; null where they do not apply.
+pub const NUMBERS: [&str; 34] = [
+    "dimension",
+    "particles_initial",
+    "particles_final",
+    "volume_fraction",
+    "seed",
+    "threads",
+    "numerics",
+    "steps",
+    "steps_capped",
+    "events",
+    "collisions",
+    "candidates",
+    "cell_collisions",
+    "rejected_moves",
+    "cell_capacity",
+    "largest_occupancy",
+    "poured",
+    "removed",
+    "collisions_per_particle",
+    "simulated_time",
+    "kinetic_energy_initial",
+    "kinetic_energy_final",
+    "temperature",
+    "momentum_drift",
+    "wall_hits",
+    "cell_crossings",
+    "list_renewals",
+    "annulled_events",
+    "cured_share",
+    "invalid_states",
+    "wall_seconds",
+    "particle_steps_per_second",
+    "events_per_second",
+    "peak_memory_bytes",
+];
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {

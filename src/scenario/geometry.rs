@@ -102,4 +102,12 @@ impl AnyScenario {
             AnyScenario::Three(scenario) => scenario.engine.kind,
         }
     }
+
+    /// Seed of all random streams.
+    pub fn seed(&self) -> u64 {
+        match self {
+            AnyScenario::Two(scenario) => scenario.seed,
+            AnyScenario::Three(scenario) => scenario.seed,
+        }
+    }
 }

@@ -39,6 +39,7 @@ use model::AnyScenario;
 pub use overrides::Overrides;
 use reader::{Reader, Section};
 pub use schema::MEASURES;
+pub use suggest::did_you_mean;
 
 /// The scenario that `source` names, a file or a built-in one, with `overrides`.
 pub fn load(source: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {

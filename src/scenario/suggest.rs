@@ -14,11 +14,7 @@ pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
 }
 
 /// `did you mean …?` where a candidate is near, the `remedy` where none is: one ending, never both.
-pub(super) fn did_you_mean<'a>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-    remedy: &str,
-) -> String {
+pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>, remedy: &str) -> String {
     nearest(name, candidates).map_or_else(|| remedy.to_owned(), |meant| format!("did you mean `{meant}`?"))
 }
 

@@ -1,0 +1,114 @@
+//! What the folder of a case holds already: judged by what stands in it, not by its name.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Map, Value};
+
+use crate::record::error::LogError;
+use crate::record::reader::read_origin;
+use crate::run::NUMERICS;
+use crate::scenario::model::AnyScenario;
+
+/// The version that writes.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What a folder holds of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Standing {
+    /// Nothing.
+    Missing,
+    /// The whole run, with its summary.
+    Finished(Map<String, Value>),
+    /// The beginning of the same run, which was interrupted or failed.
+    Unfinished,
+    /// Something else, and what tells so.
+    Foreign(String),
+}
+
+/// What `folder` holds of the run of `scenario`.
+pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
+    if !folder.is_dir() {
+        return if folder.exists() { Standing::Foreign("is a file".to_owned()) } else { Standing::Missing };
+    }
+    match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
+        Ok(true) => return Standing::Missing,
+        Ok(false) => {}
+        Err(error) => return Standing::Foreign(format!("cannot be read: {error}")),
+    }
+    let (metadata, text) = match read_origin(&folder.join("log.mcap")) {
+        Ok(origin) => origin,
+        Err(LogError::Read { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
+            return Standing::Foreign("holds no log".to_owned());
+        }
+        Err(error) => return Standing::Foreign(format!("has a log that cannot be used: {error}")),
+    };
+    if let Some(difference) = difference(&text, scenario.source_text()) {
+        return Standing::Foreign(difference);
+    }
+    let of_log = |key: &str| metadata.get(key).map_or("?", String::as_str);
+    if let Some(other) = other_program(of_log("version"), of_log("numerics")) {
+        return Standing::Foreign(other);
+    }
+    let Some(summary) = summary_of(folder) else { return Standing::Unfinished };
+    let of_summary = |key: &str| summary.get(key).map(ToString::to_string).unwrap_or_default();
+    if let Some(other) = other_program(of_summary("version").trim_matches('"'), &of_summary("numerics")) {
+        return Standing::Foreign(other);
+    }
+    if summary.get("interrupted") != Some(&Value::Bool(false)) {
+        return Standing::Unfinished;
+    }
+    Standing::Finished(summary)
+}
+
+/// The summary in `folder`, if there is a whole one.
+fn summary_of(folder: &Path) -> Option<Map<String, Value>> {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).ok()?).ok()
+}
+
+/// Says so where another program wrote a run.
+fn other_program(version: &str, numerics: &str) -> Option<String> {
+    let is_same = version == VERSION && numerics == NUMERICS.to_string();
+    (!is_same).then(|| {
+        format!(
+            "was written by version {version} with numerics {numerics}, this is {VERSION} with {NUMERICS}"
+        )
+    })
+}
+
+/// The first line in which a stored scenario differs from the one that is wanted.
+fn difference(stored: &str, wanted: &str) -> Option<String> {
+    if stored == wanted {
+        return None;
+    }
+    let lines = |text: &'_ str| text.lines().map(str::trim_end).map(str::to_owned).collect::<Vec<_>>();
+    let (stored, wanted) = (lines(stored), lines(wanted));
+    let line = (0..stored.len().max(wanted.len())).find(|&k| stored.get(k) != wanted.get(k)).unwrap_or(0);
+    let shown =
+        |lines: &[String]| lines.get(line).map_or("nothing".to_owned(), |line| format!("`{}`", line.trim()));
+    Some(format!(
+        "holds a run of another scenario: line {} has {} where {} is wanted",
+        line + 1,
+        shown(&stored),
+        shown(&wanted)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_difference_is_shown() {
+        assert_eq!(difference("a\nb\n", "a\nb\n"), None);
+        let said = difference("a\nb = 1\n", "a\nb = 2\n").unwrap();
+        assert!(said.ends_with("line 2 has `b = 1` where `b = 2` is wanted"), "{said}");
+        assert!(difference("a\n", "a\nb\n").unwrap().contains("has nothing where `b`"));
+    }
+
+    #[test]
+    fn other_versions_are_named() {
+        assert_eq!(other_program(VERSION, &NUMERICS.to_string()), None);
+        assert!(other_program(VERSION, "0").unwrap().contains("numerics 0"));
+    }
+}

@@ -1,0 +1,113 @@
+//! What a sweep came to: the input of its page, of its JSON and of the last words on the terminal.
+
+/// All that a page of a sweep shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepReport {
+    /// The scenario's title.
+    pub title: String,
+    /// The scenario's name.
+    pub scenario: String,
+    /// What varies, in a sentence.
+    pub variation: String,
+    /// What figures are plotted against.
+    pub abscissa: Abscissa,
+    /// Figures, each with a curve for every line of the grid.
+    pub figures: Vec<SweepFigure>,
+    /// Every run.
+    pub cases: Vec<SweepCase>,
+    /// Whether somebody stopped the sweep before its end.
+    pub interrupted: bool,
+    /// The scenario of the first run as TOML text.
+    pub scenario_text: String,
+    /// The version that wrote it.
+    pub version: String,
+}
+
+/// What figures are plotted against.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Abscissa {
+    /// Name of the key.
+    pub name: String,
+    /// Texts of the values.
+    pub values: Vec<String>,
+    /// The same as numbers; 1, 2, 3 … where they are none.
+    pub places: Vec<f64>,
+    /// Whether the values are numbers.
+    pub is_numeric: bool,
+}
+
+/// A figure of the summaries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepFigure {
+    /// Its name in the summary.
+    pub name: String,
+    /// One for every combination of the other varied keys and engines.
+    pub curves: Vec<FigureCurve>,
+}
+
+/// A figure against the abscissa, everything else being equal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureCurve {
+    /// What is equal; empty where there is nothing else.
+    pub name: String,
+    /// Points that have a value, in the order of the abscissa.
+    pub points: Vec<MeanPoint>,
+    /// The power law through them, where both are positive and the abscissa spans a decade.
+    pub power_law: Option<PowerLaw>,
+}
+
+/// A mean over replicas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanPoint {
+    /// Place on the abscissa.
+    pub x: f64,
+    /// The mean.
+    pub value: f64,
+    /// Its standard error: from the scatter of replicas, of one run alone from its blocks.
+    pub standard_error: Option<f64>,
+    /// Runs that it is made of.
+    pub runs: usize,
+}
+
+/// y = prefactor · x^exponent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerLaw {
+    /// The exponent.
+    pub exponent: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// y at x = 1.
+    pub prefactor: f64,
+    /// Largest distance of a point from the law, relative to the law.
+    pub largest_deviation: f64,
+    /// Points it goes through.
+    pub points: usize,
+}
+
+/// One run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepCase {
+    /// The name of its folder.
+    pub name: String,
+    /// `done`, `kept`, `failed`, `interrupted` or `not run`.
+    pub status: &'static str,
+    /// Why it failed; empty where it did not.
+    pub error: String,
+    /// Whether its folder has a page.
+    pub has_page: bool,
+}
+
+impl Abscissa {
+    /// Whether all values are positive and span at least a decade.
+    pub fn is_logarithmic(&self) -> bool {
+        self.is_numeric && spans_a_decade(self.places.iter().copied())
+    }
+}
+
+/// Whether numbers are positive and the largest is at least ten times the least.
+pub(super) fn spans_a_decade(numbers: impl Iterator<Item = f64>) -> bool {
+    let (least, most) =
+        numbers.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
+    // Ends such as 0.07 and 0.7 are no decade in binary.
+    least > 0.0 && most.is_finite() && most >= least * (10.0 - 1e-9)
+}
