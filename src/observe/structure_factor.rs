@@ -25,7 +25,7 @@ const NONE: u32 = u32::MAX;
 /// Waves run along periodic axes; k has no component along others. As in Müller's thesis the power of two is
 /// taken that gives a lattice box of about one diameter, and waves are followed up to its Nyquist wavenumber π/d.
 /// But his lattice alone would smear the positions, S would be off by what the smearing does and by aliases;
-/// here a lattice twice as fine and splines give the amplitudes of the true positions ([`super::density_waves`]).
+/// here a lattice twice as fine and splines give the amplitudes of the true positions (`observe::density_waves`).
 /// Of large boxes only long waves are followed: at most 512 shells and 2²² grid points, some tenths of a second.
 ///
 /// Errors of one moment are those of waves that are independent and of Gaussian amplitude, where k and −k are one:
