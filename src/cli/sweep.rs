@@ -106,11 +106,12 @@ fn try_sweep(arguments: &SweepArguments) -> Result<Outcome, Exit> {
         replicas: arguments.replicas,
         figures: arguments.figures.clone(),
     };
-    let plan = Plan::new(&wish).map_err(|error| told(&error))?;
+    // Before the plan: its measures may ask for threads.
     prepare(arguments.threads).map_err(|error| {
         complain(&error);
         Exit::RunFailed
     })?;
+    let plan = Plan::new(&wish).map_err(|error| told(&error))?;
     let usual = || PathBuf::from("out").join(format!("{}-sweep", plan.name()));
     let out = arguments.out.clone().unwrap_or_else(usual);
     let options = Options {
