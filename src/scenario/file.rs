@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::builtin;
 use super::error::ScenarioError;
@@ -11,13 +11,24 @@ use super::suggest::did_you_mean;
 /// The longest file that is read as a scenario.
 const LARGEST: u64 = 1 << 20;
 
-/// Name and text of the scenario that `source` names: a file, or a built-in one.
-pub(super) fn fetch(source: &str) -> Result<(String, String), ScenarioError> {
+/// A scenario's text, before anybody has understood it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fetched {
+    /// The file's stem, or the built-in name.
+    pub(super) name: String,
+    /// What it says.
+    pub(super) text: String,
+    /// Where its relative paths start: beside the file; for a built-in one, where the user stands.
+    pub(super) folder: PathBuf,
+}
+
+/// The scenario that `source` names: a file, or a built-in one.
+pub(super) fn fetch(source: &str) -> Result<Fetched, ScenarioError> {
     let path = Path::new(source);
     if !path.is_file()
         && let Some(text) = builtin::text(source)
     {
-        return Ok((source.to_owned(), text.to_owned()));
+        return Ok(Fetched { name: source.to_owned(), text: text.to_owned(), folder: PathBuf::new() });
     }
     let wrong = |message: String| ScenarioError::of_file(source, message);
     if path.is_dir() {
@@ -38,7 +49,8 @@ pub(super) fn fetch(source: &str) -> Result<(String, String), ScenarioError> {
         let at = error.utf8_error().valid_up_to();
         wrong(format!("is not UTF-8 text (byte {at}); a scenario is a TOML text"))
     })?;
-    Ok((stem(path), text))
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    Ok(Fetched { name: stem(path), text, folder })
 }
 
 fn missing(source: &str) -> String {
@@ -80,6 +92,6 @@ mod tests {
     fn a_name_is_the_stem() {
         assert_eq!(stem(Path::new("a/b.c.toml")), "b.c");
         assert_eq!(stem(Path::new("a/...toml")), "scenario");
-        assert_eq!(fetch("shear").unwrap().0, "shear");
+        assert_eq!(fetch("shear").unwrap().name, "shear");
     }
 }

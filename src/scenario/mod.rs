@@ -26,10 +26,13 @@ mod tables;
 mod walls;
 mod warnings;
 
+use std::path::Path;
+
 use toml_edit::{Document, TomlError};
 
 pub use error::ScenarioError;
 use error::{Mistake, Place};
+use file::Fetched;
 use locate::{Locator, line_of};
 use model::AnyScenario;
 pub use overrides::Overrides;
@@ -38,16 +41,32 @@ pub use schema::MEASURES;
 
 /// The scenario that `source` names, a file or a built-in one, with `overrides`.
 pub fn load(source: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
-    let (name, text) = file::fetch(source)?;
-    parse_as(source, &name, &text, overrides)
+    let Fetched { name, text, folder } = file::fetch(source)?;
+    parse_as(source, &folder, &name, &text, overrides)
 }
 
-/// The scenario called `name` that `text` describes, with `overrides`.
+/// The scenario called `name` that `text` describes, with `overrides`. Relative paths start where the user stands.
 pub fn parse(name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
-    parse_as(name, name, text, overrides)
+    parse_in(Path::new(""), name, text, overrides)
 }
 
-fn parse_as(file: &str, name: &str, text: &str, overrides: &Overrides) -> Result<AnyScenario, ScenarioError> {
+/// The same for a text that stands, or will stand, in a file of `folder`, from which its relative paths start.
+pub fn parse_in(
+    folder: &Path,
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<AnyScenario, ScenarioError> {
+    parse_as(name, folder, name, text, overrides)
+}
+
+fn parse_as(
+    file: &str,
+    folder: &Path,
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<AnyScenario, ScenarioError> {
     let original = document(file, text)?;
     if original.as_table().is_empty() && overrides.sets.is_empty() {
         let message = "holds no scenario; `grainflow scenarios show shear` prints one to start from";
@@ -57,7 +76,7 @@ fn parse_as(file: &str, name: &str, text: &str, overrides: &Overrides) -> Result
     let (changes, mut mistakes) = overrides.apply(&mut changed);
     // Without a change the text stays as it was written, byte for byte.
     let source_text = if changes.is_empty() { text.to_owned() } else { changed.to_string() };
-    let reader = Reader::new(Locator::new(original, changes));
+    let reader = Reader::new(Locator::new(original, changes), folder);
     let root = Section::root(&reader, changed.as_table(), schema::ROOT);
     let scenario = if tables::head::dimension(&root) == 3 {
         read::read(&root, name, source_text).map(AnyScenario::Three)

@@ -1,11 +1,12 @@
 //! Reads typed values out of a TOML tree and collects every mistake on the way.
 
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 use toml_edit::{Item, TableLike, Value};
 
 use super::bound::{Bound, shown};
-use super::error::Mistake;
+use super::error::{Mistake, Place};
 use super::locate::Locator;
 use super::path::KeyPath;
 use super::schema;
@@ -16,14 +17,31 @@ use crate::space::Vector;
 #[derive(Debug)]
 pub(super) struct Reader {
     locator: Locator,
+    /// Where relative paths of the file start.
+    folder: PathBuf,
     mistakes: RefCell<Vec<Mistake>>,
     /// Keys that misspelt ones probably stand for: not to be called missing as well.
     misspelt: RefCell<Vec<KeyPath>>,
 }
 
 impl Reader {
-    pub(super) fn new(locator: Locator) -> Self {
-        Reader { locator, mistakes: RefCell::default(), misspelt: RefCell::default() }
+    /// A reader of the file that `locator` knows, which stands in `folder`.
+    pub(super) fn new(locator: Locator, folder: &Path) -> Self {
+        Reader {
+            locator,
+            folder: folder.to_owned(),
+            mistakes: RefCell::default(),
+            misspelt: RefCell::default(),
+        }
+    }
+
+    /// The file that `written` at `path` means: seen from the scenario's folder, or, where an option of the command
+    /// line says it, from where the user stands.
+    fn file(&self, path: &KeyPath, written: &str) -> PathBuf {
+        match self.locator.place(path) {
+            Place::Option { .. } => PathBuf::from(written),
+            _ => self.folder.join(written),
+        }
     }
 
     /// Notes a mistake at `path`.
@@ -164,6 +182,11 @@ impl<'a> Section<'a> {
     /// The full path of `key`, which may lead through further tables.
     pub(super) fn at(&self, key: &str) -> KeyPath {
         key.split('.').fold(self.path.clone(), |path, name| path.join(name))
+    }
+
+    /// The file that the text `written` under `key` means.
+    pub(super) fn file(&self, key: &str, written: &str) -> PathBuf {
+        self.reader.file(&self.at(key), written)
     }
 
     /// Notes a mistake at `key`.

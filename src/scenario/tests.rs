@@ -212,3 +212,27 @@ fn other_line_ends_and_a_byte_order_mark_are_read() {
     let error = parse("cooling", &wrong, &Overrides::default()).unwrap_err().to_string();
     assert!(error.starts_with(&format!("cooling:{line}: dimension: 5")), "{error}");
 }
+
+/// The log that a scenario starts from.
+fn log_of(scenario: &AnyScenario) -> std::path::PathBuf {
+    let AnyScenario::Two(scenario) = scenario else { panic!("the scenario is flat") };
+    match &scenario.initial.positions {
+        InitialPositions::Log(path) => path.clone(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_log_is_looked_for_beside_the_file_that_names_it() {
+    let from_log = load("cooling", &with(&["initial.positions.log=../a/log.mcap"])).unwrap();
+    // Whoever types a path means it from where they stand.
+    assert_eq!(log_of(&from_log), std::path::Path::new("../a/log.mcap"));
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("mine.toml");
+    std::fs::write(&file, from_log.source_text()).unwrap();
+    let load = |sets: &[&str]| log_of(&load(file.to_str().unwrap(), &with(sets)).unwrap());
+    assert_eq!(load(&["run.time=3"]), place.path().join("../a/log.mcap"));
+    for set in ["initial.positions.log=b.mcap", "initial.positions={log='b.mcap'}"] {
+        assert_eq!(load(&[set]), std::path::Path::new("b.mcap"));
+    }
+}

@@ -1,7 +1,5 @@
 //! `[initial]`.
 
-use std::path::PathBuf;
-
 use crate::scenario::bound::Bound;
 use crate::scenario::model::{InitialPositions, InitialVelocities};
 use crate::scenario::reader::{Section, kind};
@@ -42,7 +40,7 @@ fn positions(initial: &Section<'_>) -> Option<InitialPositions> {
             table.mistake("log", "is empty; give the path of a log");
             return None;
         }
-        return Some(InitialPositions::Log(PathBuf::from(log)));
+        return Some(InitialPositions::Log(table.file("log", &log)));
     }
     match item.as_str() {
         Some("random") => Some(InitialPositions::Random),
