@@ -2,6 +2,8 @@
 
 mod axis;
 mod colour;
+mod comparison;
+mod curve;
 mod energy_plots;
 mod escape;
 mod evidence;
@@ -25,8 +27,10 @@ mod wave_plots;
 
 use serde_json::{Map, Value};
 
+pub use comparison::judgement::{Judgement, judgements};
 pub use picture::grains_png;
 
+use crate::comparison::model::Comparison;
 use crate::record::contents::RunLog;
 
 /// `report.html` of a run: one page that needs no network, with its parameters, plots, theory beside what was
@@ -35,4 +39,10 @@ use crate::record::contents::RunLog;
 /// It looks at the log and at the summary alone, so a report can be made again from a stored run.
 pub fn render(log: &RunLog, summary: &Map<String, Value>) -> String {
     page::page(log, summary)
+}
+
+/// `comparison.html`: several engines side by side, one page that needs no network. Verdicts first, then costs, curves
+/// with their errors and differences, pictures of the same times beside one another, figures, and how it was made.
+pub fn render_comparison(compared: &Comparison) -> String {
+    comparison::page(compared)
 }

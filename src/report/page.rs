@@ -38,19 +38,24 @@ pub(super) fn page(log: &RunLog, summary: &Map<String, Value>) -> String {
     body.push_str(&section("Energy and collisions", &plots(&energy_plots::plots(&evidence))));
     body.push_str(&section("Everything else that was recorded", &plots(&other)));
     body.push_str(&section("How it was made", &parameters::html(&evidence)));
-    let version = log.metadata.get("version").map_or_else(String::new, |v| format!(" {}", escape(v)));
+    document(&setup.title, &body, log.metadata.get("version").map_or("", String::as_str))
+}
+
+/// A page of its own around `body`, in need of nothing else.
+pub(super) fn document(title: &str, body: &str, version: &str) -> String {
+    let version = if version.is_empty() { String::new() } else { format!(" {}", escape(version)) };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <link rel=\"icon\" href=\"data:,\">\n<title>{} · grainflow</title>\n<style>\n{}</style>\n</head>\n\
          <body>\n<main>\n{body}<footer>Written by grainflow{version}.</footer>\n</main>\n</body>\n</html>\n",
-        escape(&setup.title),
+        escape(title),
         include_str!("page.css"),
     )
 }
 
 /// A section, or nothing when it has nothing to say.
-fn section(title: &str, content: &str) -> String {
+pub(super) fn section(title: &str, content: &str) -> String {
     if content.is_empty() {
         String::new()
     } else {
