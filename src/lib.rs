@@ -18,7 +18,7 @@
 //!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
 //! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
-//! ([`scenario`], [`simulation`], [`run`], [`comparison`], [`report`]) and the command line ([`cli`]).
+//! ([`scenario`], [`simulation`], [`run`], [`comparison`], [`report`]), [`campaign`]s of many runs and the command line ([`cli`]).
 
 pub mod random;
 pub mod space;
@@ -39,5 +39,7 @@ pub mod run;
 pub mod scenario;
 pub mod simulation;
 pub mod stopwatch;
+
+pub mod campaign;
 
 pub mod cli;

@@ -29,6 +29,8 @@ pub enum Phase {
     Equilibration = 9,
     /// Turns of relative velocities that prevent inelastic collapse.
     Rotation = 10,
+    /// Seeds of independent repetitions of a run.
+    Replica = 11,
 }
 
 /// All streams of one seed.
@@ -57,6 +59,11 @@ impl Streams {
     pub fn at(self, step: u64, phase: Phase) -> PhaseStreams {
         let key = mix(self.seed ^ mix(step.wrapping_add(GOLDEN)));
         PhaseStreams { key: mix(key ^ (phase as u64).wrapping_mul(GOLDEN)) }
+    }
+
+    /// The seed of repetition number `replica`, below 2⁶³ as seeds of scenarios are.
+    pub fn replica_seed(self, replica: u32) -> u64 {
+        self.at(u64::MAX, Phase::Replica).hash(u64::from(replica)) >> 1
     }
 
     /// A seed for a dependent computation, independent of all streams of this one.
@@ -183,6 +190,16 @@ mod tests {
         assert_ne!(base, draw(1, 3, Phase::Collisions, 3));
         assert_ne!(base, draw(1, 2, Phase::Wall, 3));
         assert_ne!(base, draw(1, 2, Phase::Collisions, 4));
+    }
+
+    #[test]
+    fn replicas_have_seeds_of_their_own() {
+        let seeds = |seed| (1..=1000).map(move |k| Streams::new(seed).replica_seed(k));
+        let mut all: Vec<u64> = seeds(1).chain(seeds(2)).collect();
+        assert!(all.iter().all(|&seed| i64::try_from(seed).is_ok()));
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 2000);
     }
 
     #[test]

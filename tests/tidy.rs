@@ -7,13 +7,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floors, lowest first, with their modules in the order of `src/lib.rs`.
-const FLOORS: [(&str, &[&str]); 7] = [
+const FLOORS: [(&str, &[&str]); 8] = [
     ("mathematics", &["random", "space", "statistics"]),
     ("matter", &["matter"]),
     ("laws", &["law"]),
     ("engines", &["engine"]),
     ("observation", &["observe", "record"]),
     ("runs", &["comparison", "report", "run", "scenario", "simulation", "stopwatch"]),
+    ("campaigns", &["campaign"]),
     ("command line", &["cli"]),
 ];
 /// Floors up to this one do no input or output, read no clock and know no serialisation.

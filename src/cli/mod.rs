@@ -3,6 +3,7 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "the command line is what prints")]
 
 mod check;
+mod compare;
 mod input;
 mod progress;
 mod run;
@@ -40,6 +41,7 @@ struct Arguments {
 const EXAMPLES: &str = "Examples:
   grainflow run heap                             pour a heap, into out/heap-hsmc
   grainflow run shear --set particles.restitution=0.8 --seed 3
+  grainflow compare cooling --engines hsmc,event-driven    the same grains through both
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
@@ -48,6 +50,7 @@ Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 130 interrupted.";
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::RunArguments),
+    Compare(compare::CompareArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -56,6 +59,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };

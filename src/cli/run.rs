@@ -36,7 +36,7 @@ pub(super) struct RunArguments {
 }
 
 /// Set by the first interrupt: the run ends at its next step.
-static STOP: AtomicBool = AtomicBool::new(false);
+pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 /// How often the user has asked to stop.
 static INTERRUPTS: AtomicU32 = AtomicU32::new(0);
 
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
 
 /// Starts the threads and listens for Ctrl-C and SIGTERM: the first ends the run cleanly, a
 /// second ends the program at once.
-fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Error>> {
+pub(super) fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Error>> {
     let threads = threads.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     ctrlc::set_handler(|| {

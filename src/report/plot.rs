@@ -167,7 +167,10 @@ impl Plot {
         let values = |axis: usize| {
             let curves = self.curves.iter().filter(measured).flat_map(move |c| c.points.iter());
             let edges = self.field.iter().flat_map(move |f| f.extent[axis]);
-            curves.map(move |p| p[axis]).chain(edges)
+            // Bands belong to what is shown; on a logarithmic axis they may be decades deep.
+            let has_bands = axis == 1 && self.y_scale == Scale::Linear;
+            let bands = self.curves.iter().filter(move |_| has_bands).flat_map(Curve::band_ends);
+            curves.map(move |p| p[axis]).chain(edges).chain(bands)
         };
         let exact = self.field.is_some();
         let given =
@@ -217,7 +220,9 @@ impl Plot {
             }
         }
         let mut lines = String::new();
-        for Tick { value, label } in frame.y.ticks((frame.height / 50.0) as usize) {
+        for Tick { value, label } in
+            frame.y.ticks((frame.height / if self.low { 32.0 } else { 50.0 }) as usize)
+        {
             let y = top + (1.0 - frame.y.share(value)) * frame.height;
             let length = if label.is_empty() { 3.0 } else { 5.0 };
             let _ = write!(grid, "M{left:.1} {y:.1}h-{length}");

@@ -25,13 +25,14 @@ pub(super) fn html(comparison: &Comparison) -> String {
     html.push_str("</tbody>\n</table></div>\n");
     html.push_str(
         "<p class=\"note\">Means over the runs of an engine, one run at a time. Advancing is the time of the algorithm \
-         alone, without start, measures and writing.</p>\n",
+         alone, without start, measures and writing. Memory is the most that the program held during a run, with what \
+         earlier runs left in it: a few ten MB.</p>\n",
     );
     html
 }
 
 fn row(contestant: &Contestant, exact: Option<Cost>) -> String {
-    let mut html = format!("<tr><td>{}</td>", escape(&contestant.label));
+    let mut html = format!("<tr><td class=\"engine\">{}</td>", escape(&contestant.label));
     let Some(cost) = contestant.cost else {
         html.push_str("<td colspan=\"5\">not known</td></tr>\n");
         return html;

@@ -14,7 +14,7 @@ pub(super) fn html(comparison: &Comparison) -> String {
         .map(|contestant| {
             let links: Vec<String> = contestant.folders.iter().map(|folder| link(folder)).collect();
             let links = if links.is_empty() { "none came to its end".to_owned() } else { links.join(", ") };
-            format!("<tr><td>{}</td><td>{links}</td></tr>\n", escape(&contestant.label))
+            format!("<tr><td class=\"engine\">{}</td><td>{links}</td></tr>\n", escape(&contestant.label))
         })
         .collect();
     if !runs.is_empty() {

@@ -52,7 +52,7 @@ fn cells(comparison: &Comparison, finding: &Finding<'_>) -> String {
     let (class, word) = verdict(finding.difference);
     let time = finding.time.map_or_else(String::new, |time| format!(" ({})", moment(comparison, time)));
     format!(
-        "<td>{}</td><td class=\"{class}\"><b>{word}</b></td><td>{}{}</td>",
+        "<td class=\"engine\">{}</td><td class=\"{class}\"><b>{word}</b></td><td>{}{}</td>",
         escape(label(comparison, finding.contestant)),
         escape(&finding.difference.sentence),
         escape(&time)

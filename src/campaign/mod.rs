@@ -1,0 +1,3 @@
+//! What makes many runs to answer one question.
+
+pub mod compare;
