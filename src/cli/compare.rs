@@ -18,7 +18,7 @@ use crate::scenario::Overrides;
 /// Sentences of differences that are printed for an engine; the page has all.
 const SENTENCES: usize = 4;
 
-/// Run several engines from the same initial states, or take stored runs, and say where they agree
+/// Compare engines from the same grains, or stored runs, and say where they agree
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct CompareArguments {
@@ -40,7 +40,7 @@ pub(super) struct CompareArguments {
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     measures: Option<Vec<String>>,
 
-    /// Replicas to run side by side, each on its share of the threads; nothing is then said of costs
+    /// Replicas side by side, each on its share of the threads; costs are then left out
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     jobs: Option<u16>,
 
@@ -186,6 +186,9 @@ fn closing_words(outcome: &Outcome) -> String {
 /// One engine beside the reference.
 fn verdicts(comparison: &Comparison, judgement: &Judgement) -> String {
     let reference = &comparison.contestants[comparison.reference].label;
+    if judgement.quantities() == 0 {
+        return format!("{}: no quantity could be compared with {reference}\n", judgement.engine);
+    }
     let mut text = format!(
         "{} agrees with {reference} in {} of {} quantities\n",
         judgement.engine,

@@ -116,3 +116,8 @@ pub(crate) fn text(output: &Output) -> String {
 pub(crate) fn error(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
+
+/// Whether a line of `said` judges `engine` by `reference`.
+pub(crate) fn is_judged(said: &str, engine: &str, reference: &str) -> bool {
+    said.lines().any(|line| line.starts_with(engine) && line.contains(&format!("with {reference}")))
+}
