@@ -117,7 +117,8 @@ pub fn compare(
     };
     let interrupted = stop.load(SeqCst);
     if !made.iter().any(|run| matches!(run.ending, Ending::Complete(_))) {
-        let failures = made.iter().filter_map(runs::Run::failure).collect();
+        let failures =
+            made.iter().filter_map(|run| Some(format!("{}, {}", run.folder, run.failure()?))).collect();
         return Err(CompareError::Nothing { folder: folder.path().to_owned(), failures, interrupted });
     }
     let comparison = gather::of_runs(plan, &made, folder.path(), jobs == 1)?;

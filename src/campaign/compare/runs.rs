@@ -38,8 +38,10 @@ impl Run {
     pub(super) fn failure(&self) -> Option<String> {
         match &self.ending {
             Ending::Complete(_) => None,
-            Ending::Interrupted => Some(format!("{} was interrupted, and is not compared", self.folder)),
-            Ending::Failed(reason) => Some(format!("{}: {reason}", self.folder)),
+            Ending::Interrupted => {
+                Some(format!("replica {} was interrupted, and is not compared", self.replica))
+            }
+            Ending::Failed(reason) => Some(format!("replica {}: {reason}", self.replica)),
         }
     }
 }

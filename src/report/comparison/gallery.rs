@@ -29,16 +29,30 @@ pub(super) fn html(comparison: &Comparison) -> String {
     else {
         return String::new();
     };
-    let times = times(frames(comparison, first));
+    let rows: Vec<Row<'_>> = times(frames(comparison, first))
+        .into_iter()
+        .map(|time| {
+            let frame = |place: &usize| nearest(frames(comparison, *place), time);
+            Row { time, frames: columns.iter().map(frame).collect() }
+        })
+        .collect();
+    let scenes: Vec<Scene> = columns.iter().map(|&place| scene(comparison, &columns, &rows, place)).collect();
     let mut html = format!("<div class=\"gallery\" style=\"--columns:{}\">\n", columns.len());
     for &place in &columns {
         let _ = writeln!(html, "<h3>{}</h3>", escape(label(comparison, place)));
     }
-    for time in times {
-        html.push_str(&row(comparison, &columns, time));
+    for row in &rows {
+        html.push_str(&row.html(comparison, &columns, &scenes));
     }
     html.push_str("</div>\n");
     html
+}
+
+/// Frames of about one time, one for each engine that has one.
+struct Row<'a> {
+    time: f64,
+    /// `[column]`.
+    frames: Vec<Option<&'a Frame>>,
 }
 
 fn frames(comparison: &Comparison, place: usize) -> &[Frame] {
@@ -51,35 +65,38 @@ fn times(frames: &[Frame]) -> Vec<f64> {
     spread(&seen, TIMES)
 }
 
-/// The pictures of one time, in one scale of speeds.
-fn row(comparison: &Comparison, columns: &[usize], time: f64) -> String {
-    let near: Vec<Option<&Frame>> =
-        columns.iter().map(|&place| nearest(frames(comparison, place), time)).collect();
-    let scenes: Vec<Option<Scene>> = columns
-        .iter()
-        .zip(&near)
-        .map(|(&place, frame)| {
-            let contestant = &comparison.contestants[place];
-            frame.map(|frame| Scene::of(&[frame], contestant.walls.as_ref(), contestant.diameter, false))
-        })
-        .collect();
-    let fastest = scenes.iter().flatten().map(|scene| scene.speeds[0]).fold(0.0, f64::max);
-    let width = (WIDTH / columns.len() as f64).clamp(240.0, 640.0);
-    let mut html = format!("<p>{}</p>\n", escape(&moment(comparison, time)));
-    for (k, &place) in columns.iter().enumerate() {
-        let (Some(frame), Some(scene)) = (near[k], &scenes[k]) else {
-            html.push_str("<div class=\"nothing\">no recording</div>\n");
-            continue;
-        };
-        let diameter = comparison.contestants[place].diameter;
-        let address = picture(frame, scene, fastest, diameter, width.round()).address();
-        let what =
-            format!("The grains of {} at {}", label(comparison, place), moment(comparison, frame.time));
-        let _ = writeln!(html, "<img src=\"{address}\" alt=\"{}\">", escape(&what));
+/// The view on an engine's grains: the same for all engines in the same box, at all times.
+fn scene(comparison: &Comparison, columns: &[usize], rows: &[Row<'_>], place: usize) -> Scene {
+    let own = &comparison.contestants[place];
+    let is_same_box = |column: &usize| comparison.contestants[columns[*column]].walls == own.walls;
+    let same: Vec<usize> = (0..columns.len()).filter(is_same_box).collect();
+    let all: Vec<&Frame> =
+        rows.iter().flat_map(|row| same.iter().filter_map(|&column| row.frames[column])).collect();
+    Scene::of(&all, own.walls.as_ref(), own.diameter, false)
+}
+
+impl Row<'_> {
+    /// Its pictures, in one scale of speeds.
+    fn html(&self, comparison: &Comparison, columns: &[usize], scenes: &[Scene]) -> String {
+        let shown: Vec<&Frame> = self.frames.iter().flatten().copied().collect();
+        let fastest = Scene::of(&shown, None, 1.0, false).speeds.first().copied().unwrap_or(1.0);
+        let width = (WIDTH / columns.len() as f64).clamp(240.0, 640.0);
+        let mut html = format!("<p>{}</p>\n", escape(&moment(comparison, self.time)));
+        for ((&place, frame), scene) in columns.iter().zip(&self.frames).zip(scenes) {
+            let Some(frame) = frame else {
+                html.push_str("<div class=\"nothing\">no recording</div>\n");
+                continue;
+            };
+            let diameter = comparison.contestants[place].diameter;
+            let address = picture(frame, scene, fastest, diameter, width.round()).address();
+            let when = moment(comparison, frame.time);
+            let what = format!("The grains of {} at {when}", label(comparison, place));
+            let _ = writeln!(html, "<img src=\"{address}\" alt=\"{}\">", escape(&what));
+        }
+        let speed = with_unit(comparison, "speed", Dimension { mass: 0, length: 1, time: -1 });
+        html.push_str(&colour_bar(ColourMap::Speed, "0", &number(fastest, 3), &speed));
+        html
     }
-    let speed = with_unit(comparison, "speed", Dimension { mass: 0, length: 1, time: -1 });
-    html.push_str(&colour_bar(ColourMap::Speed, "0", &number(fastest, 3), &speed));
-    html
 }
 
 /// The frame nearest to `time`; none where the engine was not recorded about then.
