@@ -58,6 +58,12 @@ pub fn peak_memory_bytes() -> Option<u64> {
     kilobytes(&status, "VmHWM:")
 }
 
+/// Makes [`peak_memory_bytes`] count from now on, where the system lets it; returns whether it does.
+pub fn forget_peak_memory() -> bool {
+    // Linux: 5 sets the peak back to what is held now.
+    std::fs::write("/proc/self/clear_refs", "5").is_ok()
+}
+
 /// The number behind `key` in a table of the system, which counts in kilobytes [bytes].
 fn kilobytes(table: &str, key: &str) -> Option<u64> {
     let line = table.lines().find_map(|line| line.strip_prefix(key))?;

@@ -16,7 +16,7 @@ const QUICK: [&str; 6] =
     ["run", "cooling", "--set", "particles.count=300", "--set", "run.collisions_per_particle=3"];
 
 /// Every key of a summary that scripts rely on, beside the scenario's own figures.
-const SUMMARY: [&str; 28] = [
+const SUMMARY: [&str; 29] = [
     "scenario",
     "engine",
     "dimension",
@@ -40,6 +40,7 @@ const SUMMARY: [&str; 28] = [
     "temperature",
     "momentum_drift",
     "wall_seconds",
+    "advancing_seconds",
     "particle_steps_per_second",
     "events_per_second",
     "peak_memory_bytes",
@@ -370,20 +371,22 @@ fn an_interrupt_ends_a_run_cleanly() {
 #[test]
 fn help_tells_what_works_and_nothing_else() {
     let place = Place::new();
-    for arguments in
-        [vec!["--help"], vec!["run", "--help"], vec!["check", "--help"], vec!["scenarios", "--help"]]
-    {
+    for verb in ["", "run", "compare", "check", "scenarios"] {
+        let arguments: Vec<&str> = [verb, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         let output = place.grainflow(&arguments);
         assert_eq!((code(&output), error(&output)), (0, String::new()));
         let said = text(&output);
-        for word in ["compare", "replay", "sweep", "calibrate", "validate", "export", "resume"] {
+        for word in ["replay", "sweep", "calibrate", "validate", "export", "resume"] {
             assert!(!said.contains(word), "{arguments:?} speaks of {word}, which does not work yet");
         }
         assert!(said.lines().all(|line| line.chars().count() <= 100), "{said}");
     }
     let run = text(&place.grainflow(&["run", "--help"]));
-    for option in ["--out", "--force", "--engine", "--seed", "--threads", "--set", "--quiet"] {
-        assert!(run.contains(option), "{option}");
+    let shared = ["--out", "--force", "--engine", "--seed", "--threads", "--set", "--quiet"];
+    shared.iter().for_each(|option| assert!(run.contains(option), "{option}"));
+    let compare = text(&place.grainflow(&["compare", "--help"]));
+    for option in shared.iter().chain(&["--engines", "--replicas", "--jobs", "--measures", "Examples:"]) {
+        assert!(compare.contains(option), "{option}");
     }
     assert_eq!(text(&place.grainflow(&["--version"])), format!("grainflow {}\n", env!("CARGO_PKG_VERSION")));
     // The examples of the help are commands that are understood.

@@ -1,4 +1,5 @@
 //! What takes many runs to answer one question.
 
 pub mod calibrate;
+pub mod compare;
 pub mod sweep;

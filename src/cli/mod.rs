@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod check;
+mod compare;
 mod input;
 mod progress;
 mod run;
@@ -43,6 +44,7 @@ const EXAMPLES: &str = "Examples:
   grainflow run heap                             pour a heap, into out/heap-hsmc
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
+  grainflow compare cooling --engines hsmc,event-driven    the same grains through both
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
@@ -53,6 +55,7 @@ enum Command {
     Run(run::RunArguments),
     Calibrate(calibrate::CalibrateArguments),
     Sweep(sweep::SweepArguments),
+    Compare(compare::CompareArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -63,6 +66,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };

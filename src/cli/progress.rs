@@ -39,6 +39,11 @@ impl Progress {
 
     /// Shows `status`, if it is time to.
     pub(super) fn tell(&mut self, status: &Status) {
+        self.tell_part("", status.progress, status);
+    }
+
+    /// Shows the `status` of the run that `name` begins to tell of, where `share` of everything is done.
+    pub(super) fn tell_part(&mut self, name: &str, share: f64, status: &Status) {
         if self.quiet {
             return;
         }
@@ -47,14 +52,14 @@ impl Progress {
         if pause < if self.bar.is_some() { BAR_SECONDS } else { LINE_SECONDS } {
             return;
         }
-        let (work, name) = match status.events {
+        let (work, things) = match status.events {
             0 => (status.particle_steps, "particle-steps"),
             events => (events, "events"),
         };
         let speed = work.saturating_sub(self.last_work) as f64 / pause;
         (self.last, self.last_work) = (now, work);
         let line = format!(
-            "t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M {name}/s",
+            "{name}t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M {things}/s",
             status.time,
             status.grains,
             status.collisions_per_particle,
@@ -62,10 +67,10 @@ impl Progress {
         );
         match &self.bar {
             Some(bar) => {
-                bar.set_position((status.progress * BAR_LENGTH as f64) as u64);
+                bar.set_position((share * BAR_LENGTH as f64) as u64);
                 bar.set_message(line);
             }
-            None => eprintln!("{:3.0} %  {line}", 100.0 * status.progress),
+            None => eprintln!("{:3.0} %  {line}", 100.0 * share),
         }
     }
 

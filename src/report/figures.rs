@@ -8,7 +8,7 @@ use crate::observe::measure::Dimension;
 use crate::statistics::block_average;
 
 /// Keys of the summary that every run has; all others are figures of its scenario.
-const COMMON: [&str; 27] = [
+const COMMON: [&str; 28] = [
     "scenario",
     "engine",
     "dimension",
@@ -32,6 +32,7 @@ const COMMON: [&str; 27] = [
     "temperature",
     "momentum_drift",
     "wall_seconds",
+    "advancing_seconds",
     "particle_steps_per_second",
     "events_per_second",
     "peak_memory_bytes",

@@ -3,6 +3,8 @@
 mod axis;
 pub mod calibration;
 mod colour;
+mod comparison;
+mod curve;
 mod energy_plots;
 mod escape;
 mod evidence;
@@ -28,9 +30,11 @@ mod wave_plots;
 
 use serde_json::{Map, Value};
 
+pub use comparison::judgement::{Judgement, judgements};
 pub use picture::grains_png;
 pub use sweep_model::{Abscissa, FigureCurve, MeanPoint, PowerLaw, SweepCase, SweepFigure, SweepReport};
 
+use crate::comparison::model::Comparison;
 use crate::record::contents::RunLog;
 
 /// `report.html` of a run: one page that needs no network, with its parameters, plots, theory beside what was
@@ -49,4 +53,10 @@ pub fn render_sweep(sweep: &SweepReport) -> String {
 /// `value` with its standard error, to the digits that mean something.
 pub fn with_error(value: f64, standard_error: Option<f64>) -> String {
     number::with_error(value, standard_error)
+}
+
+/// `comparison.html`: several engines side by side, one page that needs no network. Verdicts first, then costs, curves
+/// with their errors and differences, pictures of the same times beside one another, figures, and how it was made.
+pub fn render_comparison(compared: &Comparison) -> String {
+    comparison::page(compared)
 }

@@ -65,7 +65,7 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
 }
 
 /// Whether decades are what a reader asks of a quantity.
-fn is_energy_like(name: &str) -> bool {
+pub(super) fn is_energy_like(name: &str) -> bool {
     ["energy", "temperature", "spectrum", "power", "pressure"].iter().any(|word| name.contains(word))
 }
 

@@ -4,54 +4,9 @@ use std::fmt::Write;
 
 use super::axis::{Axis, Scale, Tick};
 use super::colour::ColourMap;
+pub(super) use super::curve::{Curve, Ink, Stroke};
 use super::escape::escape;
 use super::number::number;
-
-/// How a curve is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stroke {
-    /// A line through the points.
-    Line,
-    /// A thin line that stays behind the others.
-    Faint,
-    /// A broken line: theory, a fit.
-    Dashed,
-    /// A dot at every point.
-    Dots,
-}
-
-/// The colour of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Ink {
-    /// One of the page's own colours for categories, made for both of its themes.
-    Series(usize),
-    /// The colour of the text: theory and fits.
-    Text,
-    /// A place on the colour map of ordered things such as times, 0 … 1.
-    Ordered(f64),
-}
-
-/// Points that belong together.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Curve {
-    /// Name for the legend; empty for none.
-    pub name: String,
-    /// x and y.
-    pub points: Vec<[f64; 2]>,
-    /// Standard errors of y; empty, or one per point.
-    pub errors: Vec<f64>,
-    /// How it is drawn.
-    pub stroke: Stroke,
-    /// Its colour.
-    pub ink: Ink,
-}
-
-impl Curve {
-    /// A curve without error bars.
-    pub(super) fn new(name: impl Into<String>, points: Vec<[f64; 2]>, stroke: Stroke, ink: Ink) -> Self {
-        Self { name: name.into(), points, errors: Vec::new(), stroke, ink }
-    }
-}
 
 /// A coloured field that fills the frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +44,8 @@ pub(super) struct Plot {
     pub ordered: Option<[String; 2]>,
     /// Whether it asks for the whole width of the page.
     pub wide: bool,
+    /// Whether it is lower than usual, because it stands below another of the same abscissa.
+    pub low: bool,
     /// Whether one unit of x is as long as one unit of y.
     pub same_units: bool,
     /// Ends of the linear axes where the points do not set them.
@@ -108,6 +65,7 @@ impl Default for Plot {
             field: None,
             ordered: None,
             wide: false,
+            low: false,
             same_units: false,
             ranges: [None; 2],
         }
@@ -118,19 +76,17 @@ impl Default for Plot {
 const MARGIN: [f64; 4] = [58.0, 16.0, 30.0, 46.0];
 /// The share of the abscissa that counts as the start.
 const START: f64 = 0.15;
-/// A curve of more points is thinned to its outline.
-const MOST_POINTS: usize = 1200;
-
 /// The frame of a plot: its axes and where they lie [pixel].
-struct Frame {
-    x: Axis,
-    y: Axis,
-    width: f64,
-    height: f64,
+pub(super) struct Frame {
+    pub x: Axis,
+    pub y: Axis,
+    pub width: f64,
+    pub height: f64,
 }
 
 impl Frame {
-    fn place(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+    /// Where a point lies; nowhere for what is not finite.
+    pub(super) fn place(&self, point: [f64; 2]) -> Option<[f64; 2]> {
         let [x, y] = [self.x.share(point[0]), self.y.share(point[1])];
         let place = [MARGIN[0] + x * self.width, MARGIN[2] + (1.0 - y) * self.height];
         place.iter().all(|p| p.is_finite() && p.abs() < 1e6).then_some(place)
@@ -143,13 +99,19 @@ impl Plot {
         let frame = self.frame();
         let (width, height) = (frame.width + MARGIN[0] + MARGIN[1], frame.height + MARGIN[2] + MARGIN[3]);
         let class = if self.wide { "plot wide" } else { "plot" };
-        let mut html = format!("<figure class=\"{class}\">\n<h3>{}</h3>\n", escape(&self.title));
+        let mut html = format!("<figure class=\"{class}\">\n");
+        if !self.title.is_empty() {
+            let _ = writeln!(html, "<h3>{}</h3>", escape(&self.title));
+        }
         let _ = writeln!(
             html,
             "<svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"{}\">",
-            escape(&format!("{}: {} against {}", self.title, self.y_label, self.x_label))
+            escape(
+                format!("{}: {} against {}", self.title, self.y_label, self.x_label).trim_start_matches(": ")
+            )
         );
-        let clip = format!("clip-{:x}", checksum(&format!("{}{:?}", self.title, self.x_label)));
+        let clip =
+            format!("clip-{:x}", checksum(&format!("{}{}{:?}", self.title, self.y_label, [width, height])));
         let _ = writeln!(
             html,
             "<clipPath id=\"{clip}\"><rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>",
@@ -159,7 +121,7 @@ impl Plot {
         self.write_axes(&mut html, &frame);
         let _ = writeln!(html, "<g clip-path=\"url(#{clip})\">");
         for curve in &self.curves {
-            write_curve(&mut html, curve, &frame);
+            curve.draw(&mut html, &frame);
         }
         html.push_str("</g>\n</svg>\n");
         self.write_legend(&mut html);
@@ -205,7 +167,10 @@ impl Plot {
         let values = |axis: usize| {
             let curves = self.curves.iter().filter(measured).flat_map(move |c| c.points.iter());
             let edges = self.field.iter().flat_map(move |f| f.extent[axis]);
-            curves.map(move |p| p[axis]).chain(edges)
+            // Bands belong to what is shown; on a logarithmic axis they may be decades deep.
+            let has_bands = axis == 1 && self.y_scale == Scale::Linear;
+            let bands = self.curves.iter().filter(move |_| has_bands).flat_map(Curve::band_ends);
+            curves.map(move |p| p[axis]).chain(edges).chain(bands)
         };
         let exact = self.field.is_some();
         let given =
@@ -216,7 +181,11 @@ impl Plot {
         let y = given(1).unwrap_or_else(|| Axis::over(values(1), self.y_scale, exact));
         let outer = if self.wide { 1000.0 } else { 490.0 };
         let width = outer - MARGIN[0] - MARGIN[1];
-        let natural = if self.wide { 300.0 } else { 264.0 };
+        let natural = match (self.low, self.wide) {
+            (true, _) => 120.0,
+            (false, true) => 300.0,
+            (false, false) => 264.0,
+        };
         let height = if self.same_units {
             (width * (y.upper - y.lower) / (x.upper - x.lower)).clamp(90.0, 420.0)
         } else {
@@ -251,7 +220,9 @@ impl Plot {
             }
         }
         let mut lines = String::new();
-        for Tick { value, label } in frame.y.ticks((frame.height / 50.0) as usize) {
+        for Tick { value, label } in
+            frame.y.ticks((frame.height / if self.low { 32.0 } else { 50.0 }) as usize)
+        {
             let y = top + (1.0 - frame.y.share(value)) * frame.height;
             let length = if label.is_empty() { 3.0 } else { 5.0 };
             let _ = write!(grid, "M{left:.1} {y:.1}h-{length}");
@@ -279,18 +250,8 @@ impl Plot {
     fn write_legend(&self, html: &mut String) {
         // One curve needs no name.
         let named = self.curves.iter().filter(|c| !c.name.is_empty() && self.curves.len() > 1);
-        let entries: Vec<String> = named
-            .map(|curve| {
-                let kind = match curve.stroke {
-                    Stroke::Line | Stroke::Faint => "line",
-                    Stroke::Dashed => "dashed",
-                    Stroke::Dots => "dots",
-                };
-                let colour = colour(curve.ink);
-                let name = escape(&curve.name);
-                format!("<li><i class=\"{kind}\" style=\"color:{colour}\"></i>{name}</li>")
-            })
-            .collect();
+        let entries: Vec<String> =
+            named.map(|curve| format!("<li>{}{}</li>", curve.sample(), escape(&curve.name))).collect();
         if !entries.is_empty() {
             let _ = writeln!(html, "<ul class=\"legend\">{}</ul>", entries.join(""));
         }
@@ -313,83 +274,6 @@ pub(super) fn colour_bar(map: ColourMap, first: &str, last: &str, label: &str) -
         escape(last),
         escape(label)
     )
-}
-
-fn colour(ink: Ink) -> String {
-    match ink {
-        Ink::Series(index) => format!("var(--series-{})", index % 6),
-        Ink::Text => "var(--theory)".to_owned(),
-        // The yellow end would be lost on paper.
-        Ink::Ordered(share) => {
-            let colour = ColourMap::Field.hexadecimal(0.92 * share);
-            // Lifted where the page is dark.
-            format!("color-mix(in srgb, {colour} var(--keep), white)")
-        }
-    }
-}
-
-fn write_curve(html: &mut String, curve: &Curve, frame: &Frame) {
-    let colour = colour(curve.ink);
-    write_errors(html, curve, frame, &colour);
-    let points = outline(&curve.points);
-    if curve.stroke == Stroke::Dots {
-        let _ = writeln!(html, "<g style=\"fill:{colour}\">");
-        for [x, y] in points.iter().filter_map(|p| frame.place(*p)) {
-            let _ = write!(html, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\"/>");
-        }
-        html.push_str("</g>\n");
-        return;
-    }
-    let mut path = String::new();
-    let mut is_down = false;
-    for point in points {
-        // A gap in the data is a gap in the line.
-        let Some([x, y]) = frame.place(point) else {
-            is_down = false;
-            continue;
-        };
-        let _ = write!(path, "{}{x:.1} {y:.1}", if is_down { 'L' } else { 'M' });
-        is_down = true;
-    }
-    let class = match curve.stroke {
-        Stroke::Dashed => "curve dashed",
-        Stroke::Faint => "curve faint",
-        Stroke::Line | Stroke::Dots => "curve",
-    };
-    let _ = writeln!(html, "<path class=\"{class}\" style=\"stroke:{colour}\" d=\"{path}\"/>");
-}
-
-/// Error bars of one standard error to either side.
-fn write_errors(html: &mut String, curve: &Curve, frame: &Frame, colour: &str) {
-    let mut path = String::new();
-    for (point, error) in curve.points.iter().zip(&curve.errors) {
-        let ends = [-1.0, 1.0].map(|side| frame.place([point[0], point[1] + side * error]));
-        if let [Some([x, low]), Some([_, high])] = ends {
-            let _ = write!(path, "M{x:.1} {low:.1}V{high:.1}");
-        }
-    }
-    if !path.is_empty() {
-        let _ = writeln!(html, "<path class=\"error\" style=\"stroke:{colour}\" d=\"{path}\"/>");
-    }
-}
-
-/// The points, or the least and the most of each stretch where there are too many to see.
-fn outline(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    if points.len() <= MOST_POINTS {
-        return points.to_vec();
-    }
-    let stretch = points.len().div_ceil(MOST_POINTS / 2);
-    let mut thinned = Vec::with_capacity(MOST_POINTS + 2);
-    for part in points.chunks(stretch) {
-        let by_height = |a: &usize, b: &usize| part[*a][1].total_cmp(&part[*b][1]);
-        let least = (0..part.len()).min_by(by_height).unwrap_or(0);
-        let most = (0..part.len()).max_by(by_height).unwrap_or(0);
-        thinned.push(part[least.min(most)]);
-        if least != most {
-            thinned.push(part[least.max(most)]);
-        }
-    }
-    thinned
 }
 
 /// A number that tells texts apart (FNV-1a), for identifiers inside the page.
@@ -424,14 +308,6 @@ mod tests {
         let html = plot(vec![[0.0, 1.0], [1.0, f64::NAN], [2.0, 2.0]]).html();
         let path = html.split("class=\"curve\"").nth(1).unwrap();
         assert_eq!(path.split("\"/>").next().unwrap().matches('M').count(), 2);
-    }
-
-    #[test]
-    fn outlines_keep_the_extremes() {
-        let mut points: Vec<[f64; 2]> = (0..100_000).map(|k| [f64::from(k), 0.0]).collect();
-        points[54_321][1] = 7.0;
-        let thinned = outline(&points);
-        assert!(thinned.len() <= MOST_POINTS + 2 && thinned.contains(&points[54_321]));
     }
 
     #[test]

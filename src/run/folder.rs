@@ -38,6 +38,8 @@ pub struct RunFolder {
     working: PathBuf,
     /// Where they shall stand.
     wanted: PathBuf,
+    /// Folders that were made for this, the innermost first.
+    made: Vec<PathBuf>,
 }
 
 impl RunFolder {
@@ -52,8 +54,10 @@ impl RunFolder {
             return Err(FolderError::Exists { path: wanted.to_owned() });
         }
         let working = if occupied { beside(wanted, "new") } else { wanted.to_owned() };
+        let is_new = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+        let made = working.ancestors().take_while(is_new).map(Path::to_owned).collect();
         fs::create_dir_all(&working).map_err(|source| io_error(&working, source))?;
-        Ok(RunFolder { working, wanted: wanted.to_owned() })
+        Ok(RunFolder { working, wanted: wanted.to_owned(), made })
     }
 
     /// Where to write.
@@ -63,8 +67,10 @@ impl RunFolder {
 
     /// Gives the folder up before anything was written to it.
     pub fn abandon(self) {
-        // It only goes where it is empty; if the system will not have it, an empty folder stays behind.
-        let _ = fs::remove_dir(&self.working);
+        // They only go where they are empty; if the system will not have it, an empty folder stays behind.
+        for folder in &self.made {
+            let _ = fs::remove_dir(folder);
+        }
     }
 
     /// Puts the run in its place, and returns that.
@@ -113,5 +119,14 @@ mod tests {
         folder.settle().unwrap();
         assert_eq!(fs::read_to_string(wanted.join("log.mcap")).unwrap(), "new");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_is_given_up_leaves_nothing_behind_but_what_was_there() {
+        let place = tempfile::tempdir().unwrap();
+        fs::create_dir(place.path().join("old")).unwrap();
+        RunFolder::claim(&place.path().join("old/a/b"), false).unwrap().abandon();
+        RunFolder::claim(&place.path().join("old"), false).unwrap().abandon();
+        assert!(place.path().join("old").exists() && !place.path().join("old/a").exists());
     }
 }

@@ -1,5 +1,6 @@
 //! Runs a scenario into a folder: log, tables, summary, report.
 
+pub mod beginning;
 pub mod folder;
 mod recorder;
 mod series;

@@ -170,6 +170,7 @@ fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) ->
     };
     object(json!({
         "wall_seconds": watch.seconds(),
+        "advancing_seconds": advancing,
         "particle_steps_per_second": steps,
         "events_per_second": events,
         "peak_memory_bytes": peak_memory_bytes(),

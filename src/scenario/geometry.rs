@@ -1,6 +1,6 @@
 //! What follows from a scenario alone.
 
-use super::model::{AnyScenario, EngineKind, Scenario};
+use super::model::{AnyScenario, EngineKind, InitialPositions, RunLimits, Scenario};
 use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 use crate::observe::setting::Setting;
@@ -108,6 +108,30 @@ impl AnyScenario {
         match self {
             AnyScenario::Two(scenario) => scenario.seed,
             AnyScenario::Three(scenario) => scenario.seed,
+        }
+    }
+
+    /// Diameter of a grain, of the first species where there are several [length].
+    pub fn diameter(&self) -> f64 {
+        match self {
+            AnyScenario::Two(scenario) => scenario.grain.diameter,
+            AnyScenario::Three(scenario) => scenario.grain.diameter,
+        }
+    }
+
+    /// When the run ends.
+    pub fn run(&self) -> RunLimits {
+        match self {
+            AnyScenario::Two(scenario) => scenario.run,
+            AnyScenario::Three(scenario) => scenario.run,
+        }
+    }
+
+    /// Where the grains are at the start.
+    pub fn positions(&self) -> &InitialPositions {
+        match self {
+            AnyScenario::Two(scenario) => &scenario.initial.positions,
+            AnyScenario::Three(scenario) => &scenario.initial.positions,
         }
     }
 }

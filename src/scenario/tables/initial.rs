@@ -40,7 +40,7 @@ fn positions(initial: &Section<'_>) -> Option<InitialPositions> {
             table.mistake("log", "is empty; give the path of a log");
             return None;
         }
-        return Some(InitialPositions::Log(table.file("log", &log)));
+        return Some(InitialPositions::Log(table.file("log", log)));
     }
     match item.as_str() {
         Some("random") => Some(InitialPositions::Random),
