@@ -49,7 +49,7 @@ fn weighted_line(x: &[f64], y: &[f64], sigmas: &[f64]) -> Option<(f64, f64, f64)
     let chi_squared: f64 = points().map(|(x, y, w)| w * (y - slope * x).powi(2)).sum();
     let excess = (chi_squared / (x.len() - 2) as f64).sqrt().max(1.0);
     let error = excess / xx.sqrt();
-    (slope.is_finite() && error.is_finite()).then(|| (slope, y_mean - slope * x_mean, error))
+    (slope.is_finite() && error.is_finite()).then_some((slope, y_mean - slope * x_mean, error))
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ fn logarithmic(range: &str) -> Result<Vec<String>, String> {
     let ends: Vec<f64> =
         split(range, ',')?.into_iter().take(2).filter_map(|end| number(end.trim())).collect();
     if let [first, last] = ends[..]
-        && !(first * last > 0.0)
+        && first * last <= 0.0
     {
         return Err(format!("log({range}) needs ends of the same sign, not 0; use linear({range})"));
     }
