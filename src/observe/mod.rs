@@ -1,7 +1,9 @@
 //! Observation: one measure a file, each reads the gas and the totals and changes neither.
 
 pub mod centre_of_mass;
+pub mod clusters;
 pub mod collisions;
+pub mod correlations;
 pub mod density_contrast;
 pub mod density_profile;
 pub mod energy;
@@ -13,6 +15,7 @@ pub mod moments;
 pub mod pressure;
 pub mod setting;
 pub mod spectrum;
+pub mod temperature_profile;
 pub mod velocity_profile;
 pub mod wall_stress;
 
@@ -29,7 +32,7 @@ use measure::Measure;
 use setting::Setting;
 
 /// The names of all measures, in the order in which [`measures`] gives those that apply.
-pub const NAMES: [&str; 12] = [
+pub const NAMES: [&str; 15] = [
     "energy",
     "density-profile",
     "velocity-profile",
@@ -42,6 +45,9 @@ pub const NAMES: [&str; 12] = [
     "spectrum",
     "heap",
     "centre-of-mass",
+    "temperature-profile",
+    "correlations",
+    "clusters",
 ];
 
 /// The measures that apply to `setting` and are cheap or among those `named`, always in the same order.
@@ -52,7 +58,7 @@ pub fn measures<V: Vector>(setting: &Setting<V>, named: Option<&[String]>) -> Ve
 
 /// All measures that apply to `setting`, always in the same order.
 fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
-    let applying: [Option<Box<dyn Measure<V>>>; 12] = [
+    let applying: [Option<Box<dyn Measure<V>>>; 15] = [
         Some(Box::new(energy::Energy::new(setting))),
         Some(Box::new(density_profile::DensityProfile::new(setting))),
         boxed(velocity_profile::VelocityProfile::new(setting)),
@@ -65,6 +71,9 @@ fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
         boxed(spectrum::Spectrum::new(setting)),
         boxed(heap::Heap::new(setting)),
         boxed(centre_of_mass::CentreOfMass::new(setting)),
+        Some(Box::new(temperature_profile::TemperatureProfile::new(setting))),
+        boxed(correlations::Correlations::new(setting)),
+        Some(Box::new(clusters::Clusters::new(setting))),
     ];
     applying.into_iter().flatten().collect()
 }
@@ -91,15 +100,38 @@ mod tests {
     #[test]
     fn every_kind_of_scenario_has_its_measures() {
         let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
-        assert_eq!(names(&bed), ["energy", "density-profile", "pressure", "collisions"]);
+        assert_eq!(
+            names(&bed),
+            [
+                "energy",
+                "density-profile",
+                "pressure",
+                "collisions",
+                "temperature-profile",
+                "correlations",
+                "clusters"
+            ]
+        );
         bed.setting.counts_impacts = true;
-        assert_eq!(names(&bed)[3..], ["collisions", "impact-parameter"]);
+        assert_eq!(names(&bed)[3..5], ["collisions", "impact-parameter"]);
         bed.setting.counts_impacts = false;
         bed.walls(1, rough(DVec2::ZERO), rough(DVec2::X));
         assert_eq!(
             names(&bed),
-            ["energy", "density-profile", "velocity-profile", "wall-stress", "collisions"]
+            [
+                "energy",
+                "density-profile",
+                "velocity-profile",
+                "wall-stress",
+                "collisions",
+                "temperature-profile",
+                "clusters"
+            ]
         );
+    }
+
+    #[test]
+    fn pipes_and_heaps_have_their_measures() {
         let mut pipe = setting_of(DVec3::splat(8.0), [4, 4, 4]);
         pipe.walls(0, smooth(), smooth());
         pipe.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
@@ -111,13 +143,24 @@ mod tests {
             "flow",
             "density-contrast",
             "spectrum",
+            "temperature-profile",
+            "clusters",
         ];
         assert_eq!(names(&pipe), expected);
         pipe.walls(0, Face::Open, Face::Open);
         pipe.walls(2, smooth(), Face::Open);
         assert_eq!(
             names(&pipe),
-            ["energy", "density-profile", "wall-stress", "collisions", "heap", "centre-of-mass"]
+            [
+                "energy",
+                "density-profile",
+                "wall-stress",
+                "collisions",
+                "heap",
+                "centre-of-mass",
+                "temperature-profile",
+                "clusters"
+            ]
         );
     }
 

@@ -88,6 +88,9 @@ pub const MEASURES: &[&str] = &[
     "pressure",
     "collisions",
     "impact-parameter",
+    "temperature-profile",
+    "correlations",
+    "clusters",
 ];
 
 /// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the
