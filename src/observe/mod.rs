@@ -1,7 +1,9 @@
 //! Observation: one measure a file, each reads the gas and the totals and changes neither.
 
 pub mod centre_of_mass;
+pub mod clusters;
 pub mod collisions;
+pub mod correlations;
 pub mod density_contrast;
 pub mod density_distribution;
 pub mod density_profile;
@@ -16,6 +18,7 @@ pub mod pressure;
 pub mod setting;
 pub mod spectrum;
 pub mod structure_factor;
+pub mod temperature_profile;
 pub mod velocity_distribution;
 pub mod velocity_profile;
 pub mod wall_stress;
@@ -34,7 +37,7 @@ use measure::Measure;
 use setting::Setting;
 
 /// The names of all measures, in the order in which [`measures`] gives those that apply.
-pub const NAMES: [&str; 16] = [
+pub const NAMES: [&str; 19] = [
     "energy",
     "density-profile",
     "velocity-profile",
@@ -51,6 +54,9 @@ pub const NAMES: [&str; 16] = [
     "density-distribution",
     "pair-correlation",
     "structure-factor",
+    "temperature-profile",
+    "correlations",
+    "clusters",
 ];
 
 /// The measures that apply to `setting` and are cheap or among those `named`, always in the same order.
@@ -61,7 +67,7 @@ pub fn measures<V: Vector>(setting: &Setting<V>, named: Option<&[String]>) -> Ve
 
 /// All measures that apply to `setting`, always in the same order.
 fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
-    let applying: [Option<Box<dyn Measure<V>>>; 16] = [
+    let applying: [Option<Box<dyn Measure<V>>>; 19] = [
         Some(Box::new(energy::Energy::new(setting))),
         Some(Box::new(density_profile::DensityProfile::new(setting))),
         boxed(velocity_profile::VelocityProfile::new(setting)),
@@ -78,6 +84,9 @@ fn applying<V: Vector>(setting: &Setting<V>) -> Vec<Box<dyn Measure<V>>> {
         Some(Box::new(density_distribution::DensityDistribution::new())),
         boxed(pair_correlation::PairCorrelation::new(setting)),
         boxed(structure_factor::StructureFactor::new(setting)),
+        Some(Box::new(temperature_profile::TemperatureProfile::new(setting))),
+        boxed(correlations::Correlations::new(setting)),
+        Some(Box::new(clusters::Clusters::new(setting))),
     ];
     applying.into_iter().flatten().collect()
 }
@@ -109,15 +118,38 @@ mod tests {
     #[test]
     fn every_kind_of_scenario_has_its_measures() {
         let mut bed = setting_of(DVec2::splat(8.0), [4, 4, 1]);
-        assert_eq!(names(&bed), ["energy", "density-profile", "pressure", "collisions"]);
+        assert_eq!(
+            names(&bed),
+            [
+                "energy",
+                "density-profile",
+                "pressure",
+                "collisions",
+                "temperature-profile",
+                "correlations",
+                "clusters"
+            ]
+        );
         bed.setting.counts_impacts = true;
-        assert_eq!(names(&bed)[3..], ["collisions", "impact-parameter"]);
+        assert_eq!(names(&bed)[3..5], ["collisions", "impact-parameter"]);
         bed.setting.counts_impacts = false;
         bed.walls(1, rough(DVec2::ZERO), rough(DVec2::X));
         assert_eq!(
             names(&bed),
-            ["energy", "density-profile", "velocity-profile", "wall-stress", "collisions"]
+            [
+                "energy",
+                "density-profile",
+                "velocity-profile",
+                "wall-stress",
+                "collisions",
+                "temperature-profile",
+                "clusters"
+            ]
         );
+    }
+
+    #[test]
+    fn pipes_and_heaps_have_their_measures() {
         let mut pipe = setting_of(DVec3::splat(8.0), [4, 4, 4]);
         pipe.walls(0, smooth(), smooth());
         pipe.setting.gravity = DVec3::new(0.0, 0.0, -1.0);
@@ -129,13 +161,24 @@ mod tests {
             "flow",
             "density-contrast",
             "spectrum",
+            "temperature-profile",
+            "clusters",
         ];
         assert_eq!(names(&pipe), expected);
         pipe.walls(0, Face::Open, Face::Open);
         pipe.walls(2, smooth(), Face::Open);
         assert_eq!(
             names(&pipe),
-            ["energy", "density-profile", "wall-stress", "collisions", "heap", "centre-of-mass"]
+            [
+                "energy",
+                "density-profile",
+                "wall-stress",
+                "collisions",
+                "heap",
+                "centre-of-mass",
+                "temperature-profile",
+                "clusters"
+            ]
         );
     }
 

@@ -37,10 +37,16 @@ pub(crate) fn velocity_sums<V: Vector>(
     axis: usize,
     value: impl Fn(V) -> f64 + Sync,
 ) -> Vec<f64> {
+    sums(gas, axis, |row| value(gas.velocities()[row]))
+}
+
+/// Sum of `term` over the rows in each slice across `axis`, `[slice]`; in the order of cells for any number
+/// of threads.
+pub(crate) fn sums<V: Vector>(gas: &Gas<V>, axis: usize, term: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
     let by_cell: Vec<f64> = (0..gas.grid().number_of_cells())
         .into_par_iter()
         .with_min_len(SPAN)
-        .map(|cell| gas.velocities()[gas.rows(cell as u32)].iter().map(|&v| value(v)).sum())
+        .map(|cell| gas.rows(cell as u32).map(&term).sum())
         .collect();
     let mut sums = vec![0.0; gas.grid().cells()[axis] as usize];
     for (slice, sum) in slices_of_cells(gas, axis).zip(by_cell) {

@@ -112,6 +112,9 @@ pub const MEASURES: &[&str] = &[
     "density-distribution",
     "pair-correlation",
     "structure-factor",
+    "temperature-profile",
+    "correlations",
+    "clusters",
 ];
 
 /// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the
