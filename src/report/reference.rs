@@ -161,7 +161,7 @@ fn cooling_time(evidence: &Evidence<'_>) -> Option<Comparison> {
         figure: "cooling_time t₀ (fit up to 2 t₀)".to_owned(),
         measured,
         standard_error: None,
-        expected: Expected::Near(haff.time, 0.05),
+        expected: Expected::Near(haff.time(), 0.05),
         source: "Haff 1983; Sonine correction of van Noije and Ernst 1998; Enskog factor of Henderson 1975 (2D), Carnahan and Starling 1969 (3D)".to_owned(),
     })
 }
