@@ -58,6 +58,7 @@ fn compared(
         curves: (0..3).map(|engine| Some(curve(engine))).collect(),
         differences: (0..3).map(difference).collect(),
         places: places.clone(),
+        theory: Vec::new(),
     }
 }
 

@@ -51,6 +51,11 @@ impl HomogeneousCooling {
     pub fn collisions_until(&self, time: f64) -> f64 {
         2.0 / self.per_collision * (time / self.time).ln_1p()
     }
+
+    /// Collisions per particle and time at `time`.
+    pub fn collision_frequency(&self, time: f64) -> f64 {
+        2.0 / (self.per_collision * (self.time + time))
+    }
 }
 
 #[cfg(test)]
@@ -81,6 +86,8 @@ mod tests {
         let law = HomogeneousCooling::of::<DVec2>(Grain { diameter: 1.0, mass: 1.0 }, 0.25, 1.0, 0.9, 1.5);
         assert!((law.at_time(law.time) - 0.25).abs() < 1e-15);
         for time in [0.3, 7.0, 500.0] {
+            let counted = law.collisions_until(1.001 * time) - law.collisions_until(0.999 * time);
+            assert!((law.collision_frequency(time) / (counted / (0.002 * time)) - 1.0).abs() < 1e-5);
             let beside = law.after_collisions(law.collisions_until(time));
             assert!((law.at_time(time) / beside - 1.0).abs() < 1e-12);
         }

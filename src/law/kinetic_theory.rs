@@ -123,6 +123,17 @@ pub fn collapse_restitution(optical_depth: f64) -> f64 {
     (FRAC_PI_4 * (1.0 - 1.0 / optical_depth.max(1.0))).tan().powi(2)
 }
 
+/// Probability density of one component of the velocities of a Maxwell gas, in thermal velocities √(T/m).
+pub fn maxwell_density(scaled_velocity: f64) -> f64 {
+    libm::exp(-0.5 * scaled_velocity * scaled_velocity) / (2.0 * PI).sqrt()
+}
+
+/// Probability density of the impact parameter |b|/d under molecular chaos: 1 for disks, 2b for spheres.
+pub fn chaotic_impact_density<V: Vector>(impact_parameter: f64) -> f64 {
+    let power = V::DIMENSION as i32 - 2;
+    f64::from(power + 1) * impact_parameter.powi(power)
+}
+
 /// Mean free path of a Maxwell gas: mean speed over collision frequency.
 ///
 /// 2D πd/(8√2 νg), 3D d/(6√2 νg); the mean speed is the mean relative speed over √2.
@@ -227,6 +238,22 @@ mod tests {
             assert!((1.0 - collapse_restitution(depth) - PI / depth).abs() < 6.0 / (depth * depth));
         }
         assert_eq!(collapse_restitution(0.5), 0.0);
+    }
+
+    #[test]
+    fn densities_are_normed() {
+        let middles = (0..1000).map(|k| (f64::from(k) + 0.5) / 1000.0);
+        let impacts: [f64; 2] = middles.clone().fold([0.0; 2], |[flat, deep], b| {
+            [flat + chaotic_impact_density::<DVec2>(b), deep + chaotic_impact_density::<DVec3>(b)]
+        });
+        assert!(impacts.iter().all(|sum| (sum / 1000.0 - 1.0).abs() < 1e-12), "{impacts:?}");
+        let gauss = |power: i32| -> f64 {
+            middles
+                .clone()
+                .map(|x| (20.0 * x - 10.0).powi(power) * maxwell_density(20.0 * x - 10.0) / 50.0)
+                .sum()
+        };
+        assert!((gauss(0) - 1.0).abs() < 1e-12 && (gauss(2) - 1.0).abs() < 1e-12, "{}", gauss(0));
     }
 
     #[test]

@@ -16,13 +16,13 @@ pub mod spectrum;
 pub mod velocity_profile;
 pub mod wall_stress;
 
-mod layout;
+pub(crate) mod layout;
 mod packing;
 mod samples;
 mod slices;
 #[cfg(test)]
 mod testing;
-mod units;
+pub(crate) mod units;
 
 use crate::space::Vector;
 use measure::Measure;
