@@ -36,6 +36,8 @@ pub trait Vector:
     const UNIT_SPHERE_VOLUME: f64;
     /// Random close packing: the densest disordered volume fraction, 0.82 in 2D, 0.64 in 3D.
     const RANDOM_CLOSE_PACKING: f64;
+    /// Volume fraction at which an elastic fluid begins to freeze: 0.69 in 2D, 0.49 in 3D.
+    const FREEZING: f64;
     /// The densest lattice: volume fraction 0.9069 in 2D, 0.7405 in 3D.
     const DENSEST_PACKING: f64;
     /// Largest local volume fraction that enters g(ν) in CBA: the formula is singular at ν = 1.
@@ -151,6 +153,7 @@ impl Vector for DVec2 {
     const ZERO: Self = DVec2::ZERO;
     const UNIT_SPHERE_VOLUME: f64 = std::f64::consts::FRAC_PI_4;
     const RANDOM_CLOSE_PACKING: f64 = 0.82;
+    const FREEZING: f64 = 0.69;
     const DENSEST_PACKING: f64 = 0.906_899_682_117_109;
     const LARGEST_LOCAL_FRACTION: f64 = 0.9;
     const LARGEST_LOCAL_FRACTION_HSMC: f64 = 0.9;
@@ -239,6 +242,7 @@ impl Vector for DVec3 {
     const ZERO: Self = DVec3::ZERO;
     const UNIT_SPHERE_VOLUME: f64 = std::f64::consts::FRAC_PI_6;
     const RANDOM_CLOSE_PACKING: f64 = 0.64;
+    const FREEZING: f64 = 0.49;
     const DENSEST_PACKING: f64 = 0.740_480_489_693_061;
     const LARGEST_LOCAL_FRACTION: f64 = 0.7;
     const LARGEST_LOCAL_FRACTION_HSMC: f64 = 0.64;

@@ -3,7 +3,7 @@
 //! `GRAINFLOW_REPORT_SAMPLES=DIR cargo test --test comparison_page` leaves the page in DIR, to be looked at.
 
 use grainflow::comparison::model::{
-    Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, Verdict,
+    Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve, Verdict,
 };
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::contents::{Frame, Walls};
@@ -58,6 +58,7 @@ fn compared(
         curves: (0..3).map(|engine| Some(curve(engine))).collect(),
         differences: (0..3).map(difference).collect(),
         places: places.clone(),
+        theory: Vec::new(),
     }
 }
 
@@ -68,6 +69,12 @@ fn cooling() -> Compared {
         let pace = [3.0, 4.5, 3.05][engine];
         (1.0 + wave) / (1.0 + t / pace).powi(2)
     })
+}
+
+fn with_theory(compared: Compared) -> Compared {
+    let values = compared.places.iter().map(|t| 1.0 / (1.0 + t / 3.0).powi(2)).collect();
+    let law = TheoryCurve { name: "Haff’s law".to_owned(), source: "Haff, by hand".to_owned(), values };
+    Compared { theory: vec![law], ..compared }
 }
 
 fn density(time: f64) -> Compared {
@@ -153,7 +160,7 @@ fn made_up() -> Comparison {
         remarks: vec!["Errors come from 2 replicas.".to_owned()],
         contestants: ENGINES.iter().enumerate().map(|(k, engine)| contestant(engine, k)).collect(),
         reference: REFERENCE,
-        series: vec![cooling()],
+        series: vec![with_theory(cooling())],
         profiles: [1.0, 10.0, 40.0, 80.0].map(density).to_vec(),
         figures: vec![figure()],
     }
@@ -181,6 +188,7 @@ fn the_page_is_complete_and_needs_no_network() {
         "0.93 million events/s",
         "relative difference from event-driven",
         "Enskog, by hand",
+        "Haff’s law: Haff, by hand.",
         "Errors come from 2 replicas.",
         "href=\"hsmc-1/report.html\"",
         "title = &quot;Cooling&quot;",
@@ -189,6 +197,8 @@ fn the_page_is_complete_and_needs_no_network() {
     ] {
         assert!(page.contains(text), "{text}");
     }
+    // Theory, and the line at zero of each difference.
+    assert_eq!(page.matches("class=\"curve dashed\"").count(), 1 + 4);
     // Four times of three engines; a series and three of four times of a profile, each with its difference.
     assert_eq!(page.matches("<img ").count(), 12);
     assert_eq!(page.matches("role=\"img\"").count(), 8);
@@ -233,6 +243,7 @@ fn text_from_outside_cannot_become_markup() {
     for compared in comparison.series.iter_mut().chain(&mut comparison.profiles) {
         (compared.name, compared.ordinate.name, compared.abscissa.name) = (outside(), outside(), outside());
         compared.differences.iter_mut().flatten().for_each(|difference| difference.sentence = outside());
+        compared.theory.iter_mut().for_each(|theory| (theory.name, theory.source) = (outside(), outside()));
     }
     comparison.figures[0].name = outside();
     comparison.figures[0].theory = Some((1.0, outside()));

@@ -92,6 +92,19 @@ pub struct Compared {
     pub curves: Vec<Option<CurveOf>>,
     /// `[contestant]` against the reference; `None` for the reference itself and where either has no curve.
     pub differences: Vec<Option<Difference>>,
+    /// What theory says, where it says something.
+    pub theory: Vec<TheoryCurve>,
+}
+
+/// What theory says of a quantity.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TheoryCurve {
+    /// What the law is called in a legend.
+    pub name: String,
+    /// Whose it is, and for what it holds.
+    pub source: String,
+    /// The values at the places of what it stands beside.
+    pub values: Vec<f64>,
 }
 
 /// Mean over replicas at each place.

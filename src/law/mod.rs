@@ -1,6 +1,7 @@
 //! Laws: pure functions of the matter they act on.
 
 pub mod boundary;
+pub mod homogeneous_cooling;
 pub mod impact;
 pub mod kinetic_theory;
 pub mod pair_collision;

@@ -13,6 +13,8 @@ pub(crate) struct Shear<V> {
     pub(crate) direction: V,
     /// That velocity's magnitude v [length/time].
     pub(crate) speed: f64,
+    /// Velocity of the lower wall along `direction` [length/time].
+    pub(crate) lower: f64,
 }
 
 /// A wall that things fall on.
@@ -39,9 +41,11 @@ pub(crate) fn shear<V: Vector>(setting: &Setting<V>) -> Option<Shear<V>> {
         let [Face::Wall(lower), Face::Wall(upper)] = setting.boundary.faces(axis)? else {
             return None;
         };
-        let relative = velocity_along(upper, axis) - velocity_along(lower, axis);
+        let lower = velocity_along(lower, axis);
+        let relative = velocity_along(upper, axis) - lower;
         let speed = relative.length();
-        (speed > 0.0).then(|| Shear { axis, direction: relative * (1.0 / speed), speed })
+        let direction = relative * (1.0 / speed);
+        (speed > 0.0).then(|| Shear { axis, direction, speed, lower: lower.dot(direction) })
     })
 }
 
@@ -110,7 +114,7 @@ mod tests {
         assert_eq!(shear(&bed.setting), None);
         bed.walls(2, rough(DVec3::new(0.0, -1.0, 0.0)), rough(DVec3::new(0.0, 2.0, 0.0)));
         let found = shear(&bed.setting).unwrap();
-        assert_eq!(found, Shear { axis: 2, direction: DVec3::Y, speed: 3.0 });
+        assert_eq!(found, Shear { axis: 2, direction: DVec3::Y, speed: 3.0, lower: -1.0 });
         assert_eq!(profile_axis(&bed.setting), 2);
         bed.walls(2, rough(DVec3::Y), rough(DVec3::Y));
         assert_eq!(shear(&bed.setting), None);

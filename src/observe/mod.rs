@@ -24,13 +24,13 @@ pub mod velocity_profile;
 pub mod wall_stress;
 
 mod density_waves;
-mod layout;
+pub(crate) mod layout;
 mod packing;
 mod samples;
 mod slices;
 #[cfg(test)]
 mod testing;
-mod units;
+pub(crate) mod units;
 
 use crate::space::Vector;
 use measure::Measure;

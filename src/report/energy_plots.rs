@@ -6,23 +6,13 @@ use super::axis::Scale;
 use super::evidence::Evidence;
 use super::number::number;
 use super::plot::{Curve, Ink, Plot, Stroke};
-use crate::law::kinetic_theory::{
-    collision_frequency, cooling_per_collision, haff_time, sonine_cooling_factor,
-    sonine_cooling_factor_per_collision,
-};
+use crate::law::homogeneous_cooling::HomogeneousCooling;
 use crate::matter::grain::Grain;
 use crate::space::Vector;
 
 /// Haff's law for a run, with the first Sonine correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Haff {
-    /// T₀: temperature at the start [energy].
-    pub temperature: f64,
-    /// t₀: time in which the temperature falls to a quarter [time].
-    pub time: f64,
-    /// The temperature falls by e in this many collisions per particle, inverted.
-    pub per_collision: f64,
-}
+pub(super) struct Haff(HomogeneousCooling);
 
 impl Haff {
     /// The law of a homogeneous gas that cools: periodic, without force, of constant restitution below 1.
@@ -35,27 +25,26 @@ impl Haff {
         }
         let temperature = initial_temperature(evidence).filter(|t| *t > 0.0)?;
         let grain = Grain { diameter: setup.diameter, mass: setup.mass };
-        // Plain DSMC collides at the rate of a Boltzmann gas.
-        let is_boltzmann = setup.engine == "dsmc";
-        let (time, per_collision) = match setup.dimension {
-            3 => law::<DVec3>(grain, nu, temperature, restitution, is_boltzmann),
-            _ => law::<DVec2>(grain, nu, temperature, restitution, is_boltzmann),
+        let law = match setup.dimension {
+            3 => law::<DVec3>,
+            _ => law::<DVec2>,
         };
-        Some(Self { temperature, time, per_collision })
+        // Plain DSMC collides at the rate of a Boltzmann gas.
+        Some(Self(law(grain, nu, temperature, restitution, setup.engine == "dsmc")))
     }
 
-    /// T at `time`.
-    pub(super) fn at_time(&self, time: f64) -> f64 {
-        self.temperature / (1.0 + time / self.time).powi(2)
+    /// t₀ [time].
+    pub(super) fn time(&self) -> f64 {
+        self.0.time
     }
 
     /// t₀ as measured: 1/slope of √(T₀/T) − 1 over the points up to 2 t₀, through the origin.
     pub(super) fn measured_time(&self, temperatures: &[[f64; 2]]) -> Option<f64> {
-        let early = temperatures.iter().filter(|p| p[0] > 0.0 && p[0] <= 2.0 * self.time && p[1] > 0.0);
+        let early = temperatures.iter().filter(|p| p[0] > 0.0 && p[0] <= 2.0 * self.0.time && p[1] > 0.0);
         let (mut squares, mut products, mut count) = (0.0, 0.0, 0);
         for [time, temperature] in early {
             squares += time * time;
-            products += time * ((self.temperature / temperature).sqrt() - 1.0);
+            products += time * ((self.0.temperature / temperature).sqrt() - 1.0);
             count += 1;
         }
         (count >= 3 && products > 0.0).then(|| squares / products)
@@ -68,13 +57,9 @@ fn law<V: Vector>(
     temperature: f64,
     restitution: f64,
     is_boltzmann: bool,
-) -> (f64, f64) {
+) -> HomogeneousCooling {
     let correlation = if is_boltzmann { 1.0 } else { V::contact_correlation(nu) };
-    let frequency = collision_frequency::<V>(grain, nu, temperature, correlation);
-    (
-        haff_time::<V>(restitution, frequency) / sonine_cooling_factor::<V>(restitution),
-        2.0 * cooling_per_collision::<V>(restitution) * sonine_cooling_factor_per_collision::<V>(restitution),
-    )
+    HomogeneousCooling::of::<V>(grain, nu, temperature, restitution, correlation)
 }
 
 /// From the first recording, else from the energy of the summary.
@@ -147,11 +132,11 @@ fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, labe
         plot.caption = format!("The last grain is poured at about t = {}.", number(count / rate, 3));
     }
     if let Some(haff) = haff {
-        let law = points.iter().map(|p| [p[0], haff.at_time(p[0])]).collect();
+        let law = points.iter().map(|p| [p[0], haff.0.at_time(p[0])]).collect();
         plot.curves.push(Curve::new("Haff’s law, Sonine-corrected", law, Stroke::Dashed, Ink::Text));
         plot.caption = format!(
             "T₀(1 + t/t₀)⁻² with t₀ = {} from kinetic theory; nothing is fitted. A gas that clusters leaves the law.",
-            number(haff.time, 4)
+            number(haff.time(), 4)
         );
     }
     plot.curves.insert(0, Curve::new("measured", points, Stroke::Line, Ink::Series(0)));
@@ -170,10 +155,9 @@ fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) 
         ..Plot::default()
     };
     if let Some(haff) = haff {
-        let decay = |p: &[f64; 2]| [p[0], haff.temperature * (-haff.per_collision * p[0]).exp()];
-        let law = points.iter().map(decay).collect();
+        let law = points.iter().map(|p| [p[0], haff.0.after_collisions(p[0])]).collect();
         plot.curves.push(Curve::new("homogeneous cooling", law, Stroke::Dashed, Ink::Text));
-        plot.caption = format!("T₀ exp(−γτ) with γ = {} per collision.", number(haff.per_collision, 4));
+        plot.caption = format!("T₀ exp(−γτ) with γ = {} per collision.", number(haff.0.per_collision, 4));
     }
     plot.curves.insert(0, Curve::new("measured", points, Stroke::Line, Ink::Series(0)));
     Some(plot)

@@ -10,6 +10,7 @@ const SCENARIOS: &[(&str, &str, &str)] = &[
     ("heap-full", "A heap of 30 500 grains", include_str!("../../scenarios/heap-full.toml")),
     ("cooling", "Cooling of a granular gas (Haff's law)", include_str!("../../scenarios/cooling.toml")),
     ("clustering", "Clusters in a freely cooling gas", include_str!("../../scenarios/clustering.toml")),
+    ("correlations", "Correlations in a dissipative gas", include_str!("../../scenarios/correlations.toml")),
     ("sedimentation", "A hundred disks settle in a box", include_str!("../../scenarios/sedimentation.toml")),
     (
         "simic-cooling",

@@ -4,6 +4,7 @@ use super::bound::rounded;
 use super::cost;
 use super::estimate;
 use super::model::{Cure, Scenario};
+use crate::law::kinetic_theory::{collapse_restitution, optical_depth};
 use crate::law::restitution::{Constant, RestitutionLaw};
 use crate::space::Vector;
 
@@ -45,17 +46,14 @@ pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
     ))
 }
 
-/// The restitution below which collapse can happen, tan²(π/4 (1 − 1/l)), where l = ν L/d is the optical depth
-/// of a cube of these grains (Miller 2004, 4.8 and 4.9).
+/// The restitution below which collapse can happen in a cube of these grains.
 fn critical_restitution<V: Vector>(grains: f64, scenario: &Scenario<V>) -> f64 {
     let volume_fraction = super::check::volume_fraction_of(scenario, grains);
     if volume_fraction <= 0.0 {
         return 0.0;
     }
     let side = (grains * V::UNIT_SPHERE_VOLUME / volume_fraction).powf(1.0 / V::DIMENSION as f64);
-    let optical_depth = volume_fraction * side;
-    let angle = std::f64::consts::FRAC_PI_4 * (1.0 - 1.0 / optical_depth.max(1.0));
-    angle.tan().powi(2)
+    collapse_restitution(optical_depth(volume_fraction, side, 1.0))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use place::{GAS, HEAP, Place, code, error, is_judged, text};
 /// Every file of the folder of a run.
 const RUN: [&str; 4] = ["log.mcap", "series.csv", "summary.json", "report.html"];
 /// The files of a comparison.
-const COMPARISON: [&str; 1] = ["comparison.html"];
+const COMPARISON: [&str; 3] = ["comparison.html", "comparison.json", "comparison.csv"];
 
 #[test]
 fn every_engine_runs_from_the_same_initial_states() {

@@ -13,6 +13,9 @@ fn shorter(name: &str) -> &'static [&'static str] {
         "clustering" => {
             &["domain.size=[100.0, 100.0]", "particles.count=3183", "run.collisions_per_particle=20.0"]
         }
+        "correlations" => {
+            &["domain.size=[250.0, 250.0]", "particles.count=3979", "run.collisions_per_particle=20.0"]
+        }
         "cooling" | "hard-spheres" => &["run.collisions_per_particle=10.0", "initial.equilibrate=2.0"],
         "simic-cooling" => &["run.collisions_per_particle=10.0"],
         "pipe" => &["run.time=40.0"],
@@ -28,7 +31,7 @@ fn what_it_shows(name: &str) -> &'static [&'static str] {
     match name {
         "heap" | "heap-full" => &["heap_height", "centre_of_mass_height", "kinetic_energy_final"],
         "simic-cooling" => &["temperature", "wall_normal_stress"],
-        "clustering" | "cooling" | "hard-spheres" => {
+        "clustering" | "correlations" | "cooling" | "hard-spheres" => {
             &["compressibility_factor", "temperature", "momentum_drift"]
         }
         "pipe" => &["contrast_over_poisson", "flow_rate", "flow_velocity", "spectrum_slope"],

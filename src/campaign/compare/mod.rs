@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 
 use crate::comparison::model::Comparison;
+use crate::comparison::{csv, json, theory};
 use crate::record::error::LogError;
 use crate::report::render_comparison;
 use crate::run::RunError;
@@ -121,21 +122,25 @@ pub fn compare(
             made.iter().filter_map(|run| Some(format!("{}, {}", run.folder, run.failure()?))).collect();
         return Err(CompareError::Nothing { folder: folder.path().to_owned(), failures, interrupted });
     }
-    let comparison = gather::of_runs(plan, &made, folder.path(), jobs == 1)?;
+    let mut comparison = gather::of_runs(plan, &made, folder.path(), jobs == 1)?;
+    theory::add(&mut comparison);
     write_files(folder.path(), &comparison)?;
     Ok(Outcome { folder: folder.settle()?, comparison, interrupted })
 }
 
 /// Compares stored runs, each named by its log or its folder, into `out`.
 pub fn compare_logs(logs: &[PathBuf], out: &Path, force: bool) -> Result<Outcome, CompareError> {
-    let comparison = gather::of_logs(logs)?;
+    let mut comparison = gather::of_logs(logs)?;
+    theory::add(&mut comparison);
     let folder = RunFolder::claim(out, force)?;
     write_files(folder.path(), &comparison)?;
     Ok(Outcome { folder: folder.settle()?, comparison, interrupted: false })
 }
 
-/// `comparison.html`.
+/// `comparison.json`, `comparison.csv`, `comparison.html`.
 fn write_files(folder: &Path, comparison: &Comparison) -> Result<(), CompareError> {
+    write_text(&folder.join("comparison.json"), &json::text(comparison))?;
+    write_text(&folder.join("comparison.csv"), &csv::text(comparison))?;
     write_text(&folder.join("comparison.html"), &render_comparison(comparison))
 }
 

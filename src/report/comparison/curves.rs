@@ -2,7 +2,7 @@
 
 use super::judgement::stages;
 use super::{label, labelled, moment, reference};
-use crate::comparison::model::{Compared, Comparison, Difference};
+use crate::comparison::model::{Compared, Comparison, Difference, TheoryCurve};
 use crate::report::axis::Scale;
 use crate::report::energy_plots::scale_of_times;
 use crate::report::evidence::spread;
@@ -70,8 +70,12 @@ fn values(comparison: &Comparison, compared: &Compared) -> Plot {
         let curve = Curve::new(label(comparison, place), over_places(compared, &of.values), stroke, ink);
         Some(Curve { errors: of.errors.clone(), ..curve })
     });
-    let curves: Vec<Curve> = of_contestants.collect();
+    let mut curves: Vec<Curve> = of_contestants.collect();
     let [x_scale, y_scale] = scales(compared, &curves);
+    let theory = |of: &TheoryCurve| {
+        Curve::new(of.name.as_str(), over_places(compared, &of.values), Stroke::Dashed, Ink::Text)
+    };
+    curves.extend(compared.theory.iter().map(theory));
     Plot {
         title: title(comparison, compared),
         x_label: labelled(comparison, &compared.abscissa),
@@ -79,8 +83,16 @@ fn values(comparison: &Comparison, compared: &Compared) -> Plot {
         x_scale,
         y_scale,
         curves,
+        caption: caption(compared),
         ..Plot::default()
     }
+}
+
+/// Where each theory is from.
+fn caption(compared: &Compared) -> String {
+    let told: Vec<String> =
+        compared.theory.iter().map(|theory| format!("{}: {}.", theory.name, theory.source)).collect();
+    told.join(" ")
 }
 
 fn title(comparison: &Comparison, compared: &Compared) -> String {
