@@ -11,13 +11,15 @@ mod runs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 
+use crate::comparison::csv::csv;
+use crate::comparison::json::json;
 use crate::comparison::model::Comparison;
+use crate::comparison::{LogsError, assemble, read};
 use crate::record::error::LogError;
 use crate::report::render_comparison;
 use crate::run::RunError;
 use crate::run::folder::{FolderError, RunFolder};
 use crate::scenario::ScenarioError;
-pub use gather::LogsError;
 pub use plan::{Plan, PlanError, USUAL_REPLICAS, Wish};
 use runs::{Ending, Runs};
 pub use runs::{Listener, Moment};
@@ -127,14 +129,17 @@ pub fn compare(
 
 /// Compares stored runs, each named by its log or its folder, into `out`.
 pub fn compare_logs(logs: &[PathBuf], out: &Path, force: bool) -> Result<Outcome, CompareError> {
-    let comparison = gather::of_logs(logs)?;
+    let (head, entries) = read(logs)?;
+    let comparison = assemble(head, entries);
     let folder = RunFolder::claim(out, force)?;
     write_files(folder.path(), &comparison)?;
     Ok(Outcome { folder: folder.settle()?, comparison, interrupted: false })
 }
 
-/// `comparison.html`.
+/// `comparison.html`, `comparison.json`, `comparison.csv`.
 fn write_files(folder: &Path, comparison: &Comparison) -> Result<(), CompareError> {
+    write_text(&folder.join("comparison.json"), &json(comparison))?;
+    write_text(&folder.join("comparison.csv"), &csv(comparison))?;
     write_text(&folder.join("comparison.html"), &render_comparison(comparison))
 }
 
