@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::model::{Compared, ComparedFigure, Comparison, Difference};
 
 /// The columns, in order.
-const HEADER: &str =
+pub const HEADER: &str =
     "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict";
 
 /// The file's text: a line per place and contestant of every series and profile, and one per contestant of a figure.

@@ -1,11 +1,27 @@
 //! What several runs have in common and where they part: read from their logs, with errors.
+//!
+//! How errors and verdicts are made stands in `docs/comparison.md`.
 
+mod assemble;
 pub mod csv;
+mod difference;
+mod figures;
+mod interpolate;
 pub mod json;
+mod memory;
 pub mod model;
+mod profiles;
+mod read;
+mod series;
 mod stability;
+mod student;
 #[cfg(test)]
 mod testing;
 pub mod theory;
 #[cfg(test)]
 mod theory_tests;
+mod words;
+
+pub use assemble::{Entry, Head, Replica, assemble};
+pub(crate) use figures::unit_of;
+pub use read::{LogsError, read};

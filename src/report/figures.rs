@@ -4,7 +4,7 @@
 use super::evidence::Evidence;
 use super::number::number;
 use super::setup::Setup;
-use crate::observe::measure::Dimension;
+use crate::comparison::unit_of as unit_of_figure;
 use crate::statistics::block_average;
 
 /// Keys of the summary that every run has; all others are figures of its scenario.
@@ -62,28 +62,27 @@ pub(super) const COUNTERS: [&str; 16] = [
 /// Figures that are told beside another one.
 const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
 
-/// Known figures in the order of their weight: name, powers of mass, length and time in two dimensions, and
-/// whether it is a mean over the second half of the run.
-const KNOWN: [(&str, [i8; 3], bool); 19] = [
-    ("heap_slope", [0, 0, 0], false),
-    ("heap_height", [0, 1, 0], false),
-    ("velocity_profile_slope", [0, 0, 0], true),
-    ("contrast_over_poisson", [0, 0, 0], true),
-    ("density_contrast", [0, 0, 0], true),
-    ("spectrum_slope", [0, 0, 0], false),
-    ("flow_velocity", [0, 1, -1], true),
-    ("flow_rate", [0, 0, -1], true),
-    ("wall_shear_stress", [1, 0, -2], true),
-    ("wall_normal_stress", [1, 0, -2], true),
-    ("centre_of_mass_height", [0, 1, 0], false),
-    ("centre_of_mass_mean_height", [0, 1, 0], true),
-    ("compressibility_factor", [0, 0, 0], true),
-    ("pressure", [1, 0, -2], true),
-    ("collision_frequency", [0, 0, -1], true),
-    ("mean_free_time", [0, 0, 1], true),
-    ("mean_free_path", [0, 1, 0], true),
-    ("impact_c", [0, 0, 0], true),
-    ("rotational_energy", [1, 2, -2], false),
+/// Known figures in the order of their weight, and whether each is a mean over the second half of the run.
+const KNOWN: [(&str, bool); 19] = [
+    ("heap_slope", false),
+    ("heap_height", false),
+    ("velocity_profile_slope", true),
+    ("contrast_over_poisson", true),
+    ("density_contrast", true),
+    ("spectrum_slope", false),
+    ("flow_velocity", true),
+    ("flow_rate", true),
+    ("wall_shear_stress", true),
+    ("wall_normal_stress", true),
+    ("centre_of_mass_height", false),
+    ("centre_of_mass_mean_height", true),
+    ("compressibility_factor", true),
+    ("pressure", true),
+    ("collision_frequency", true),
+    ("mean_free_time", true),
+    ("mean_free_path", true),
+    ("impact_c", true),
+    ("rotational_energy", false),
 ];
 
 /// A drift shows in no fewer recordings than these in the second half.
@@ -120,16 +119,7 @@ pub(super) fn unit_of(evidence: &Evidence<'_>, name: &str) -> String {
     if let Some((_, column)) = evidence.column(name) {
         return evidence.setup.unit(column.unit);
     }
-    let known = KNOWN.iter().find(|known| known.0 == name).map(|known| known.1);
-    let [mass, mut length, time] = match name {
-        "temperature" => [1, 2, -2],
-        _ => known.unwrap_or_default(),
-    };
-    // A force per area is one per length in two dimensions.
-    if mass == 1 && !["temperature", "rotational_energy"].contains(&name) {
-        length -= i8::from(evidence.setup.dimension == 3);
-    }
-    evidence.setup.unit(Dimension { mass, length, time })
+    evidence.setup.unit(unit_of_figure(name, evidence.setup.dimension))
 }
 
 /// Whether a figure says what its name says.
@@ -144,7 +134,7 @@ pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
 
 /// Whether a mean over the second half stands for more than itself.
 pub(super) fn is_steady(evidence: &Evidence<'_>, name: &str) -> bool {
-    let is_mean = KNOWN.iter().find(|known| known.0 == name).is_none_or(|known| known.2);
+    let is_mean = KNOWN.iter().find(|known| known.0 == name).is_none_or(|known| known.1);
     is_mean && has_meaning(evidence, name) && doubt(evidence, name).is_none()
 }
 
@@ -178,7 +168,7 @@ pub(super) fn second_half(points: &[[f64; 2]]) -> &[[f64; 2]] {
 
 /// Why a figure should not be taken for that of a steady state, in words; `None` when nothing speaks against it.
 pub(super) fn doubt(evidence: &Evidence<'_>, name: &str) -> Option<String> {
-    if !KNOWN.iter().any(|known| known.0 == name && known.2) {
+    if !KNOWN.iter().any(|known| known.0 == name && known.1) {
         return None;
     }
     if name == "velocity_profile_slope"

@@ -12,13 +12,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 
 use crate::comparison::model::Comparison;
-use crate::comparison::{csv, json, theory};
+use crate::comparison::{LogsError, assemble, csv, json, read, theory};
 use crate::record::error::LogError;
 use crate::report::render_comparison;
 use crate::run::RunError;
 use crate::run::folder::{FolderError, RunFolder};
 use crate::scenario::ScenarioError;
-pub use gather::LogsError;
 pub use plan::{Plan, PlanError, USUAL_REPLICAS, Wish};
 use runs::{Ending, Runs};
 pub use runs::{Listener, Moment};
@@ -130,7 +129,8 @@ pub fn compare(
 
 /// Compares stored runs, each named by its log or its folder, into `out`.
 pub fn compare_logs(logs: &[PathBuf], out: &Path, force: bool) -> Result<Outcome, CompareError> {
-    let mut comparison = gather::of_logs(logs)?;
+    let (head, entries) = read(logs)?;
+    let mut comparison = assemble(head, entries);
     theory::add(&mut comparison);
     let folder = RunFolder::claim(out, force)?;
     write_files(folder.path(), &comparison)?;

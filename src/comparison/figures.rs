@@ -1,0 +1,122 @@
+//! Figures of the summaries, side by side.
+
+use serde_json::{Map, Value};
+
+use super::assemble::{Entry, Replica};
+use super::difference::{Drawn, Rule, difference, of_estimates};
+use super::model::{ComparedFigure, Difference};
+use super::words::{Subject, in_words};
+use crate::observe::measure::Dimension;
+use crate::statistics::{BLOCKS, Estimate, average};
+
+/// Figures that every run has and that say something of its physics.
+const COMMON: [&str; 4] =
+    ["temperature", "kinetic_energy_final", "collisions_per_particle", "simulated_time"];
+/// Degrees of freedom of an error from blocks of each of two runs, at least.
+const FREEDOM: f64 = BLOCKS as f64 - 1.0;
+
+/// All figures that two contestants have.
+pub(super) fn compared(entries: &[Entry], reference: usize, dimension: usize) -> Vec<ComparedFigure> {
+    let mut names: Vec<&str> = Vec::new();
+    for summary in entries.iter().flat_map(|entry| &entry.runs).filter_map(|run| run.summary.as_ref()) {
+        for name in summary.keys().map(String::as_str).filter(|name| is_figure(summary, name)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names.into_iter().filter_map(|name| figure(entries, reference, dimension, name)).collect()
+}
+
+/// A scenario's own figures have a place for their error, be there one or not.
+fn is_figure(summary: &Map<String, Value>, name: &str) -> bool {
+    COMMON.contains(&name) || summary.contains_key(&error_key(name))
+}
+
+fn error_key(name: &str) -> String {
+    format!("{name}_standard_error")
+}
+
+fn number(run: &Replica, key: &str) -> Option<f64> {
+    run.summary.as_ref()?.get(key)?.as_f64()
+}
+
+fn figure(entries: &[Entry], reference: usize, dimension: usize, name: &str) -> Option<ComparedFigure> {
+    let values: Vec<Option<Estimate>> = entries.iter().map(|entry| estimate(entry, name)).collect();
+    if values.iter().flatten().count() < 2 {
+        return None;
+    }
+    let differences = entries.iter().enumerate().map(|(place, entry)| {
+        let other = (place != reference).then_some(&entries[reference])?;
+        against(entry, other, name)
+    });
+    let differences = differences.collect();
+    Some(ComparedFigure {
+        name: name.to_owned(),
+        unit: unit(entries, name, dimension),
+        values,
+        differences,
+        theory: None,
+    })
+}
+
+/// The mean over replicas; of one run what it says itself.
+fn estimate(entry: &Entry, name: &str) -> Option<Estimate> {
+    let values: Vec<f64> = entry.runs.iter().filter_map(|run| number(run, name)).collect();
+    let mut estimate = average(&values)?;
+    if let ([_], [run]) = (&values[..], &entry.runs[..]) {
+        estimate.standard_error = number(run, &error_key(name));
+    }
+    Some(estimate)
+}
+
+fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
+    let subject = Subject {
+        label: &own.label,
+        reference: &other.label,
+        quantity: in_words(name),
+        abscissa: String::new(),
+        time: None,
+        is_cooling: false,
+    };
+    if let ([a], [b]) = (&own.runs[..], &other.runs[..]) {
+        let values = [number(a, name)?, number(b, name)?];
+        return Some(of_estimates(
+            values,
+            [a, b].map(|run| number(run, &error_key(name))),
+            FREEDOM,
+            &subject,
+        ));
+    }
+    let drawn = |entry: &Entry| -> Vec<Drawn> {
+        let runs = entry.runs.iter().filter_map(|run| Some((run.number, number(run, name)?)));
+        runs.map(|(replica, value)| Drawn { replica, values: vec![value] }).collect()
+    };
+    let rule = Rule { is_relative: false, is_in_time: false };
+    difference(&drawn(own), &drawn(other), &[0.0], rule, &subject)
+}
+
+/// The unit of a figure, from the series where that has it.
+fn unit(entries: &[Entry], name: &str, dimension: usize) -> Dimension {
+    let columns = entries.iter().flat_map(|entry| &entry.runs).flat_map(|run| &run.log.columns);
+    let found = columns.clone().find(|column| column.name == name);
+    found.map_or_else(|| unit_of(name, dimension), |column| column.unit)
+}
+
+/// The unit of a figure in so many dimensions: a force per area is one per length in two.
+pub(crate) fn unit_of(name: &str, dimension: usize) -> Dimension {
+    let [mass, length, time] = match name {
+        "temperature" | "rotational_energy" | "kinetic_energy_final" => [1, 2, -2],
+        "wall_shear_stress" | "wall_normal_stress" | "pressure" => {
+            [1, if dimension == 3 { -1 } else { 0 }, -2]
+        }
+        "flow_velocity" => [0, 1, -1],
+        "flow_rate" | "collision_frequency" => [0, 0, -1],
+        "mean_free_time" | "simulated_time" => [0, 0, 1],
+        "heap_height" | "centre_of_mass_height" | "centre_of_mass_mean_height" | "mean_free_path" => {
+            [0, 1, 0]
+        }
+        _ => [0, 0, 0],
+    };
+    Dimension { mass, length, time }
+}
