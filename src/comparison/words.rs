@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn numbers_keep_two_digits_of_their_error() {
-        assert_eq!(with_error(3.14159, 0.0412), "3.142 ± 0.041");
+        assert_eq!(with_error(2.71559, 0.0412), "2.716 ± 0.041");
         assert_eq!(with_error(1234.5, 12.0), "1234 ± 12");
         assert_eq!(with_error(0.001, 0.03), "0.0010 ± 0.030");
         assert_eq!(short(0.0, 3), "0");
