@@ -131,6 +131,7 @@ pub fn compare(
 pub fn compare_logs(logs: &[PathBuf], out: &Path, force: bool) -> Result<Outcome, CompareError> {
     let mut comparison = gather::of_logs(logs)?;
     theory::add(&mut comparison);
+    comparison.remarks.push("Where theory is shown, it is that of the first log’s scenario.".to_owned());
     let folder = RunFolder::claim(out, force)?;
     write_files(folder.path(), &comparison)?;
     Ok(Outcome { folder: folder.settle()?, comparison, interrupted: false })
