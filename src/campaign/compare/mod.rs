@@ -132,6 +132,7 @@ pub fn compare_logs(logs: &[PathBuf], out: &Path, force: bool) -> Result<Outcome
     let (head, entries) = read(logs)?;
     let mut comparison = assemble(head, entries);
     theory::add(&mut comparison);
+    comparison.remarks.push("Where theory is shown, it is that of the first log’s scenario.".to_owned());
     let folder = RunFolder::claim(out, force)?;
     write_files(folder.path(), &comparison)?;
     Ok(Outcome { folder: folder.settle()?, comparison, interrupted: false })
