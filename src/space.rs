@@ -208,19 +208,13 @@ impl Vector for DVec2 {
         // ⟨√(1 − b²)⟩ = π/4 over uniform b; the other mean by Simpson's rule.
         let r = restitution;
         let speed_after = |b: f64| (r * r * (1.0 - b * b) + b * b).sqrt();
-        let intervals = 512;
-        let width = 1.0 / f64::from(intervals);
-        let sum: f64 = (0..=intervals)
-            .map(|k| {
-                let weight = match k {
-                    0 => 1.0,
-                    _ if k == intervals => 1.0,
-                    _ if k % 2 == 1 => 4.0,
-                    _ => 2.0,
-                };
-                weight * speed_after(f64::from(k) * width)
-            })
-            .sum();
+        const INTERVALS: u32 = 512;
+        let width = 1.0 / f64::from(INTERVALS);
+        let weight = |k: u32| match k {
+            0 | INTERVALS => 1.0,
+            k => f64::from(2 + 2 * (k % 2)),
+        };
+        let sum: f64 = (0..=INTERVALS).map(|k| weight(k) * speed_after(f64::from(k) * width)).sum();
         0.5 * (1.0 + r) * std::f64::consts::FRAC_PI_4 / (sum * width / 3.0)
     }
     #[inline(always)]

@@ -209,7 +209,7 @@ fn profiles_are_compared_at_the_nearest_times_and_written() {
     assert_eq!(verdicts, [(Some(0.0), Verdict::Agrees), (Some(1.0), Verdict::Differs)]);
     let table = csv::text(&comparison);
     assert!(table.starts_with(csv::HEADER));
-    let line = "profile,density-profile/density,1.0,height,2.5,\"hsmc, thesis\",3.11,0.0,false,";
+    let line = "profile,density-profile: density,1.0,2.5,\"hsmc, thesis\",3.11,0.0,";
     assert!(table.contains(line), "{table}");
     let read: serde_json::Value = serde_json::from_str(&json::text(&comparison)).unwrap();
     assert_eq!(read["profiles"][1]["differences"][1]["verdict"], "differs");

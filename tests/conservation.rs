@@ -234,7 +234,8 @@ fn assert_comes_back_from_a_log<V: Vector>(simulation: &Simulation<'_, V>) {
     log.state(&saved).unwrap();
     log.finish().unwrap();
     let mut read = last_state::<V>(file.path()).unwrap().unwrap();
-    assert_eq!(read, saved);
+    // As text: a measure may remember what is not a number, and that equals nothing.
+    assert_eq!(format!("{read:?}"), format!("{saved:?}"));
     let scenario = simulation.scenario();
     assert_eq!(&read.take_gas(scenario.grid(), scenario.grain), simulation.gas());
 }
