@@ -98,6 +98,29 @@ fn a_shift_is_found_with_its_size_and_the_place_where_curves_part() {
 }
 
 #[test]
+fn a_small_shift_of_the_whole_curve_is_found_with_few_replicas() {
+    // Four replicas: at each of ten places the limit is 20 errors; the mean of ten has the error √(2/40) = 0.22, and
+    // the limit for that, three degrees of freedom and the probability 0.00135, is 12. The shift is 27.
+    let mut random = random(11);
+    let mut logs = |shift: f64| -> Vec<RunLog> {
+        (0..4).map(|_| log(&even(10), |t| [1.0, t, 5.0 + shift + random.gaussian()])).collect()
+    };
+    let comparison =
+        assemble(Head::default(), vec![entry("event-driven", logs(0.0)), entry("hsmc", logs(6.0))]);
+    let difference = found(&comparison, "stress", "time").1;
+    assert_eq!(difference.verdict, Verdict::Differs, "{}", difference.sentence);
+    assert!(difference.threshold > 20.0, "{}", difference.threshold);
+}
+
+#[test]
+fn long_series_are_thinned_with_their_ends() {
+    let logs = || vec![log(&even(1001), |t| [1.0, t, 1.0]), log(&even(1001), |t| [1.0, t, 1.0])];
+    let comparison = assemble(Head::default(), vec![entry("event-driven", logs()), entry("hsmc", logs())]);
+    let places = &found(&comparison, "stress", "time").0.places;
+    assert_eq!((places.len(), places[0], places[199]), (200, 0.0, 1000.0));
+}
+
+#[test]
 fn exponentials_taken_at_other_times_are_equal() {
     let cooling = |t: f64| [(-0.3 * t).exp(), 2.0 * t, 0.0];
     let shifted: Vec<f64> = (0..21).map(|k| 0.97 * f64::from(k)).collect();

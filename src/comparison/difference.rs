@@ -2,9 +2,9 @@
 
 use super::memory::blocked;
 use super::model::{CurveOf, Difference, Peak, Verdict};
-use super::student::threshold;
-use super::words::{Subject, sentence};
-use crate::statistics::average;
+use super::student::{HALF, THREE_SIGMA, threshold};
+use super::words::{Subject, overall_sentence, sentence};
+use crate::statistics::{Estimate, average, mean};
 
 /// Differences that are a smaller share of the values than this are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -50,6 +50,8 @@ struct Raw {
     freedom: f64,
     /// Values among which the largest is looked for.
     compared: usize,
+    /// The difference of whole curves: its mean along them, from replicas, in the terms of `values`.
+    overall: Option<Estimate>,
 }
 
 /// `own` minus `reference` over the replicas that both have; `None` where they share no place.
@@ -72,10 +74,34 @@ pub(super) fn difference(
     }
     let mut raw = match &pairs[..] {
         [single] => of_one(single, places, rule),
-        _ => of_replicas(&pairs, places.len()),
+        _ => {
+            let mut raw = of_replicas(&pairs, places.len());
+            raw.unpair(&[own, reference].map(|of| curve(&measured(of, rule), places.len()).errors));
+            raw
+        }
     };
     raw.compared = raw.compared.max(1);
     Some(judged(raw, places, rule, subject))
+}
+
+impl Raw {
+    /// Differences that all pairs share by chance, as counts of few grains do, get the error of two independent means
+    /// with the given `errors` `[own, reference][place]`.
+    fn unpair(&mut self, errors: &[Vec<f64>; 2]) {
+        for (place, error) in self.errors.iter_mut().enumerate() {
+            if *error == 0.0 && self.values[place] != 0.0 {
+                *error = errors[0][place].hypot(errors[1][place]);
+            }
+        }
+    }
+}
+
+/// The curves in the terms in which they are subtracted.
+fn measured(of: &[Drawn], rule: Rule) -> Vec<Drawn> {
+    let term = |value: &f64| if rule.is_relative { value.ln() } else { *value };
+    of.iter()
+        .map(|one| Drawn { replica: one.replica, values: one.values.iter().map(term).collect() })
+        .collect()
 }
 
 /// The logarithm of the ratio, or the difference; 0 where it is rounding.
@@ -92,14 +118,29 @@ fn of_replicas(pairs: &[Vec<f64>], places: usize) -> Raw {
     let CurveOf { values, errors } = curve(&drawn, places);
     let is_tested = |(value, error): (&f64, &f64)| *error > 0.0 || (*error == 0.0 && *value != 0.0);
     let compared = values.iter().zip(&errors).filter(|pair| is_tested(*pair)).count();
-    Raw { values, errors, freedom: pairs.len() as f64 - 1.0, compared }
+    let overall = if places > 1 { overall(pairs) } else { None };
+    Raw { values, errors, freedom: pairs.len() as f64 - 1.0, compared, overall }
+}
+
+/// The mean over the places that all pairs have, and its scatter over pairs; `None` where nothing scatters.
+fn overall(pairs: &[Vec<f64>]) -> Option<Estimate> {
+    let places = pairs.iter().map(Vec::len).min()?;
+    let shared: Vec<usize> = (0..places).filter(|k| pairs.iter().all(|pair| pair[*k].is_finite())).collect();
+    let of_pair = |pair: &Vec<f64>| mean(&shared.iter().map(|k| pair[*k]).collect::<Vec<f64>>());
+    let means: Vec<f64> = pairs.iter().filter_map(of_pair).collect();
+    average(&means).filter(|estimate| estimate.standard_error.is_some_and(|error| error > 0.0))
 }
 
 /// One replica: blocks where that is possible; errors stay unknown otherwise, but for equal values.
 fn of_one(values: &[f64], places: &[f64], rule: Rule) -> Raw {
     let known: Vec<usize> = (0..values.len()).filter(|k| values[*k].is_finite()).collect();
-    let mut raw =
-        Raw { values: values.to_vec(), errors: vec![f64::NAN; values.len()], freedom: 1.0, compared: 1 };
+    let mut raw = Raw {
+        values: values.to_vec(),
+        errors: vec![f64::NAN; values.len()],
+        freedom: 1.0,
+        compared: 1,
+        overall: None,
+    };
     if known.iter().all(|k| values[*k] == 0.0) {
         known.iter().for_each(|k| raw.errors[*k] = 0.0);
         return raw;
@@ -135,16 +176,26 @@ pub(super) fn of_estimates(
         _ if value == 0.0 => 0.0,
         _ => f64::NAN,
     };
-    judged(Raw { values: vec![value], errors: vec![error], freedom, compared: 1 }, &[0.0], rule, subject)
+    judged(
+        Raw { values: vec![value], errors: vec![error], freedom, compared: 1, overall: None },
+        &[0.0],
+        rule,
+        subject,
+    )
 }
 
 fn judged(raw: Raw, places: &[f64], rule: Rule, subject: &Subject<'_>) -> Difference {
-    let limit = threshold(raw.freedom, raw.compared);
+    // Two tests share the probability of a false alarm.
+    let probability = if raw.overall.is_some() { HALF } else { THREE_SIGMA };
+    let limit = threshold(probability, raw.freedom, raw.compared);
+    let limit_of_all = threshold(probability, raw.freedom, 1);
+    let ratio_of_all = |all: &Estimate| ratio(all.value, all.standard_error.unwrap_or(f64::NAN));
+    let apart_in_all = raw.overall.filter(|all| ratio_of_all(all) > limit_of_all);
     let ratios: Vec<f64> = raw.values.iter().zip(&raw.errors).map(|(v, e)| ratio(*v, *e)).collect();
     let most = peak(&ratios, places);
     let verdict = match most {
         None => Verdict::Unknown,
-        Some(peak) if peak.standard_errors > limit => Verdict::Differs,
+        Some(peak) if peak.standard_errors > limit || apart_in_all.is_some() => Verdict::Differs,
         Some(_) => Verdict::Agrees,
     };
     let shares = |k: usize| {
@@ -164,8 +215,21 @@ fn judged(raw: Raw, places: &[f64], rule: Rule, subject: &Subject<'_>) -> Differ
         verdict,
         sentence: String::new(),
     };
-    difference.sentence = sentence(&difference, places, subject);
+    let is_apart_somewhere = difference.most.is_some_and(|peak| peak.standard_errors > limit);
+    difference.sentence = match apart_in_all {
+        Some(all) if !is_apart_somewhere => {
+            overall_sentence(share(all, rule), rule.is_relative, [ratio_of_all(&all), limit_of_all], subject)
+        }
+        _ => sentence(&difference, places, subject),
+    };
     difference
+}
+
+/// A mean logarithm as a share, with its ratio to its error kept.
+fn share(all: Estimate, rule: Rule) -> Estimate {
+    let value = if rule.is_relative { all.value.exp_m1() } else { all.value };
+    let stretch = if all.value == 0.0 { 1.0 } else { value / all.value };
+    Estimate { value, standard_error: all.standard_error.map(|error| error * stretch) }
 }
 
 /// In standard errors; NaN where nothing is known.

@@ -10,8 +10,8 @@ use crate::observe::measure::Dimension;
 use crate::statistics::{BLOCKS, Estimate, average};
 
 /// Figures that every run has and that say something of its physics.
-const COMMON: [&str; 4] =
-    ["temperature", "kinetic_energy_final", "collisions_per_particle", "simulated_time"];
+const COMMON: [&str; 5] =
+    ["temperature", "kinetic_energy_final", "collisions", "collisions_per_particle", "simulated_time"];
 /// Degrees of freedom of an error from blocks of each of two runs, at least.
 const FREEDOM: f64 = BLOCKS as f64 - 1.0;
 

@@ -8,7 +8,7 @@ use crate::observe::measure::Profile;
 use crate::record::contents::RunLog;
 
 /// Times at which a profile that was taken often is compared, spread evenly with the last.
-const TIMES: usize = 8;
+const TIMES: usize = 5;
 
 /// Every column of every profile that two contestants have.
 pub(super) fn compared(entries: &[Entry], reference: usize) -> Vec<Compared> {

@@ -11,6 +11,8 @@ use crate::record::contents::RunLog;
 const TIME: &str = "time";
 const COLLISIONS: &str = "collisions_per_particle";
 const ENERGY: Dimension = Dimension { mass: 1, length: 2, time: -2 };
+/// Places of a series: more would widen what counts as a difference at each and tell little more.
+const PLACES: usize = 200;
 /// An energy of the reference that falls below this share of its first value cools.
 const COOLED: f64 = 0.9;
 
@@ -71,6 +73,15 @@ pub(super) struct Form<'a> {
     pub(super) is_energy: bool,
 }
 
+/// At most [`PLACES`] of them, spread evenly by their number, with the first and the last.
+fn thinned(places: &[f64]) -> Vec<f64> {
+    let last = places.len().saturating_sub(1);
+    match places.len() > PLACES {
+        true => (0..PLACES).map(|k| places[k * last / (PLACES - 1)]).collect(),
+        false => places.to_vec(),
+    }
+}
+
 /// Curves at the places of the reference, or of the first that has any; `None` unless two have some.
 pub(super) fn compare(
     entries: &[Entry],
@@ -82,7 +93,10 @@ pub(super) fn compare(
         return None;
     }
     let leading = [&curves[reference]].into_iter().chain(curves).find_map(|runs| runs.first())?;
-    let places = &leading.1.x;
+    let is_in_time = form.time.is_none() && [TIME, COLLISIONS].contains(&form.abscissa.name.as_str());
+    // One run alone is cut into blocks, which need every place that there is.
+    let has_replicas = curves.iter().any(|runs| runs.len() > 1);
+    let places = &if is_in_time && has_replicas { thinned(&leading.1.x) } else { leading.1.x.clone() };
     let all = || curves.iter().flatten().map(|(_, curve)| curve);
     let is_relative = form.is_energy && all().all(Sampled::is_positive);
     let path = if is_relative { Path::Logarithmic } else { Path::Straight };
@@ -100,7 +114,6 @@ pub(super) fn compare(
         let known = || values.iter().filter(|y| y.is_finite());
         known().next().zip(known().next_back()).is_some_and(|(first, last)| *last < COOLED * first)
     };
-    let is_in_time = form.time.is_none() && [TIME, COLLISIONS].contains(&form.abscissa.name.as_str());
     let rule = Rule { is_relative, is_in_time };
     let is_cooling = is_relative && is_in_time && ends(&leading.1.y);
     let quantity = match form.name == form.ordinate.name {

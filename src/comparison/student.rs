@@ -6,16 +6,19 @@
 /// Two-sided probability of a normal variable beyond three standard deviations.
 pub(super) const THREE_SIGMA: f64 = 0.002_699_796_063_260_19;
 
+/// Half of it, for each of two tests.
+pub(super) const HALF: f64 = 0.5 * THREE_SIGMA;
+
 /// Steps of a bisection: the bounds are then neighbours.
 const HALVINGS: usize = 200;
 
-/// Standard errors beyond which one of `places` independent values lies by chance with the probability
-/// [`THREE_SIGMA`], where the error has `freedom` degrees of freedom.
+/// Standard errors beyond which one of `places` independent values lies by chance with `probability`, where the error
+/// has `freedom` degrees of freedom.
 ///
 /// Each place gets the share 1 − (1 − p)^(1/places) of p. For normal values of any correlation the whole is then at
 /// most p (Šidák 1967, J. Am. Stat. Assoc. 62, 626).
-pub(super) fn threshold(freedom: f64, places: usize) -> f64 {
-    let share = -(-THREE_SIGMA).ln_1p() / places.max(1) as f64;
+pub(super) fn threshold(probability: f64, freedom: f64, places: usize) -> f64 {
+    let share = -(-probability).ln_1p() / places.max(1) as f64;
     let probability = -(-share).exp_m1();
     let (mut lower, mut upper) = (0.0_f64, 1.0_f64);
     while two_sided(upper, freedom) > probability {
@@ -89,11 +92,20 @@ mod tests {
     }
 
     #[test]
+    fn tails_that_stand_in_tables() {
+        // Abramowitz and Stegun 1964, table 26.10: t beyond which 1 % lies on both sides together.
+        for (freedom, t) in [(3.0, 5.841), (5.0, 4.032), (10.0, 3.169), (30.0, 2.750)] {
+            assert!((two_sided(t, freedom) / 0.01 - 1.0).abs() < 1e-3, "{freedom}");
+            assert!((threshold(0.01, freedom, 1) - t).abs() < 6e-4, "{freedom}");
+        }
+    }
+
+    #[test]
     fn three_standard_errors_when_the_error_is_known() {
-        assert!((threshold(1e9, 1) - 3.0).abs() < 1e-5);
+        assert!((threshold(THREE_SIGMA, 1e9, 1) - 3.0).abs() < 1e-5);
         // With two replicas: tan(π/2 (1 − p)).
         let one = (std::f64::consts::FRAC_PI_2 * (1.0 - THREE_SIGMA)).tan();
-        assert!((threshold(1.0, 1) / one - 1.0).abs() < 1e-9);
-        assert!(threshold(1e9, 50) > 4.0 && threshold(1e9, 50) < 4.1);
+        assert!((threshold(THREE_SIGMA, 1.0, 1) / one - 1.0).abs() < 1e-9);
+        assert!(threshold(THREE_SIGMA, 1e9, 50) > 4.0 && threshold(THREE_SIGMA, 1e9, 50) < 4.1);
     }
 }

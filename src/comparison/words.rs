@@ -1,6 +1,7 @@
 //! A difference as a sentence.
 
 use super::model::{Difference, Verdict};
+use crate::statistics::Estimate;
 
 /// What a sentence is about.
 #[derive(Clone, Debug)]
@@ -51,7 +52,8 @@ pub(super) fn sentence(difference: &Difference, places: &[f64], subject: &Subjec
     let when = subject.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
     let Some(most) = difference.most else {
         return format!(
-            "{label}: no error is known for {quantity}{when}, so nothing is said against {reference}"
+            "{label}: no error is known for {quantity}{when}, since one run alone has too few independent stretches of \
+             it, so nothing is said against {reference}"
         );
     };
     let place = |x: f64| match subject.abscissa.is_empty() {
@@ -89,6 +91,37 @@ pub(super) fn sentence(difference: &Difference, places: &[f64], subject: &Subjec
         .filter(|_| places.len() > 1)
         .map_or_else(String::new, |x| format!("; apart from {} {} on", subject.abscissa, short(x, 3)));
     format!("{label}: {claim}{} ({apart}){stays}", place(most.place))
+}
+
+/// What whole curves say where no single place says it: `all` is their mean difference, `ratios` that in standard errors
+/// and the limit.
+pub(super) fn overall_sentence(
+    all: Estimate,
+    is_relative: bool,
+    ratios: [f64; 2],
+    subject: &Subject<'_>,
+) -> String {
+    let Subject { label, reference, quantity, .. } = subject;
+    let when = subject.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
+    let error = all.standard_error.unwrap_or(f64::NAN);
+    let amount = match is_relative {
+        true => format!("{} %", with_error(100.0 * all.value.abs(), 100.0 * error)),
+        false => with_error(all.value.abs(), error),
+    };
+    let (side, cools) = if all.value < 0.0 { ("below", "faster") } else { ("above", "more slowly") };
+    let [ratio, limit] = ratios.map(|ratio| short(ratio, 2));
+    let apart = format!(
+        "({ratio} standard errors, beyond {limit}; the error is too wide at any single {})",
+        subject.abscissa
+    );
+    match subject.is_cooling {
+        true => format!(
+            "{label}: cools {cools} than {reference}, {quantity}{when} {amount} {side} in the mean of the whole curve {apart}"
+        ),
+        false => format!(
+            "{label}: {quantity}{when} is {amount} {side} {reference} in the mean of the whole curve {apart}"
+        ),
+    }
 }
 
 #[cfg(test)]
