@@ -27,7 +27,7 @@ pub(super) struct CalibrateArguments {
     #[arg(long, value_name = "K", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     replicas: u32,
 
-    /// Seed of the first run, from 0 to 2^63 - 1; the others have the numbers that follow
+    /// Seed of the first run, from 0 to 2^63 - 1; others count on from it
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
 

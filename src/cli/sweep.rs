@@ -29,7 +29,7 @@ pub(super) struct SweepArguments {
     #[arg(value_name = "SCENARIO")]
     scenario: String,
 
-    /// A key and its values: key=[a, b, c], key=linear(first, last, count), key=log(first, last, count)
+    /// A key and its values: key=[a, b, c], key=linear(from, to, count), key=log(…)
     ///
     /// 'a=[…] + b=[…]' moves keys together; several --vary make a grid.
     #[arg(long = "vary", value_name = "KEY=[A,B,C]")]
@@ -55,7 +55,7 @@ pub(super) struct SweepArguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace other runs that stand in the folders of cases; finished runs of the same cases are kept
+    /// Replace other runs in the folders of cases; finished runs of the same cases stay
     #[arg(long)]
     force: bool,
 

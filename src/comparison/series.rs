@@ -82,6 +82,12 @@ fn thinned(places: &[f64]) -> Vec<f64> {
     }
 }
 
+/// The curves of one contestant at common places.
+fn drawn_at(runs: &[(u32, Sampled)], places: &[f64], path: Path) -> Vec<Drawn> {
+    let at = |(replica, curve): &(u32, Sampled)| Drawn { replica: *replica, values: curve.at(places, path) };
+    runs.iter().map(at).collect()
+}
+
 /// Curves at the places of the reference, or of the first that has any; `None` unless two have some.
 pub(super) fn compare(
     entries: &[Entry],
@@ -100,16 +106,7 @@ pub(super) fn compare(
     let all = || curves.iter().flatten().map(|(_, curve)| curve);
     let is_relative = form.is_energy && all().all(Sampled::is_positive);
     let path = if is_relative { Path::Logarithmic } else { Path::Straight };
-    let drawn: Vec<Vec<Drawn>> = curves
-        .iter()
-        .map(|runs| {
-            let at = |(replica, curve): &(u32, Sampled)| {
-                let values = curve.at(places, path);
-                Drawn { replica: *replica, values }
-            };
-            runs.iter().map(at).collect()
-        })
-        .collect();
+    let drawn: Vec<Vec<Drawn>> = curves.iter().map(|runs| drawn_at(runs, places, path)).collect();
     let ends = |values: &[f64]| {
         let known = || values.iter().filter(|y| y.is_finite());
         known().next().zip(known().next_back()).is_some_and(|(first, last)| *last < COOLED * first)
