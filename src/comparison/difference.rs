@@ -8,6 +8,8 @@ use crate::statistics::{Estimate, average, mean};
 
 /// Differences that are a smaller share of the values than this are rounding.
 const ROUNDING: f64 = 1e-12;
+/// Differences that scatter less than this share of themselves are the same in all replicas.
+const SHARED: f64 = 1e-9;
 /// Places whose gaps differ by a larger factor are not evenly spaced, and no blocks are made of them.
 const EVEN: f64 = 1.5;
 
@@ -89,7 +91,8 @@ impl Raw {
     /// with the given `errors` `[own, reference][place]`.
     fn unpair(&mut self, errors: &[Vec<f64>; 2]) {
         for (place, error) in self.errors.iter_mut().enumerate() {
-            if *error == 0.0 && self.values[place] != 0.0 {
+            let is_shared = *error <= SHARED * self.values[place].abs();
+            if is_shared && self.values[place] != 0.0 {
                 *error = errors[0][place].hypot(errors[1][place]);
             }
         }

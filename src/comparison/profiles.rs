@@ -10,6 +10,9 @@ use crate::record::contents::RunLog;
 /// Times at which a profile that was taken often is compared, spread evenly with the last.
 const TIMES: usize = 5;
 
+/// The column in which profiles state the errors of another.
+const STANDARD_ERROR: &str = "standard_error";
+
 /// Every column of every profile that two contestants have.
 pub(super) fn compared(entries: &[Entry], reference: usize) -> Vec<Compared> {
     let logs = || entries.iter().flat_map(|entry| &entry.runs).map(|run| &run.log);
@@ -26,7 +29,9 @@ pub(super) fn compared(entries: &[Entry], reference: usize) -> Vec<Compared> {
         let times: Vec<f64> = of(leading, name).map(|profile| profile.time).collect();
         let Some(pattern) = of(leading, name).next_back() else { continue };
         for at in spread(times.len()) {
-            for column in 1..pattern.columns.len() {
+            // What one run knows of its own errors is no quantity to be compared.
+            let columns = (1..pattern.columns.len()).filter(|c| pattern.columns[*c].name != STANDARD_ERROR);
+            for column in columns {
                 all.extend(at_time(entries, reference, pattern, column, &times, at));
             }
         }
