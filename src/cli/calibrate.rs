@@ -12,7 +12,7 @@ use crate::report::calibration::Calibration;
 use crate::scenario::Overrides;
 use crate::statistics::Estimate;
 
-/// Measure p(b) and p(ν) in event-driven runs of a scenario, as tables for the stochastic engines
+/// Measure p(b) and p(ν) in event-driven runs, as tables for the stochastic engines
 #[derive(Args, Debug)]
 pub(super) struct CalibrateArguments {
     /// A scenario file, or the name of a built-in scenario (see `grainflow scenarios`)
