@@ -13,7 +13,7 @@ pub(super) struct ScenarioInput {
     #[arg(value_name = "SCENARIO")]
     scenario: String,
 
-    /// Engine in place of the scenario's: dsmc, cba or hsmc
+    /// Engine in place of the scenario's: dsmc, cba, hsmc or event-driven
     #[arg(long, value_name = "KIND")]
     engine: Option<String>,
 

@@ -52,8 +52,8 @@ pub(super) fn sentence(difference: &Difference, places: &[f64], subject: &Subjec
     let when = subject.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
     let Some(most) = difference.most else {
         return format!(
-            "{label}: no error is known for {quantity}{when}, since one run alone has too few independent stretches of \
-             it, so nothing is said against {reference}"
+            "{label}: no error is known for {quantity}{when}, since one run alone does not tell it, so \
+             nothing is said against {reference}"
         );
     };
     let place = |x: f64| match subject.abscissa.is_empty() {
