@@ -16,10 +16,12 @@ const LINK: f64 = 0.1;
 
 /// Clusters of linked grains at every recording: two grains are linked when the distance of their surfaces is
 /// less than 0.1 of their contact distance, over periodic images. A grain alone is a cluster of size 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Clusters {
     /// Which axes are periodic.
     periodic: [bool; 3],
+    /// When the clusters were last looked for [time], and what was found: for the profile of the same moment.
+    latest: Option<(f64, Census)>,
 }
 
 /// The clusters of one state.
@@ -35,7 +37,7 @@ impl Clusters {
     /// The measure for `setting`; every one has it.
     pub fn new<V: Vector>(setting: &Setting<V>) -> Self {
         let is_periodic = |axis| axis < V::DIMENSION && setting.boundary.is_periodic(axis);
-        Clusters { periodic: std::array::from_fn(is_periodic) }
+        Clusters { periodic: std::array::from_fn(is_periodic), latest: None }
     }
 }
 
@@ -57,6 +59,10 @@ impl Census {
             bins.insert(position);
         }
         Census { sizes: forest.sizes(), percolates: forest.winds() }
+    }
+
+    fn grains(&self) -> usize {
+        self.sizes.iter().map(|&size| size as usize).sum()
     }
 
     fn largest(&self) -> f64 {
@@ -133,11 +139,15 @@ impl<V: Vector> Measure<V> for Clusters {
         ];
         let periodic = census.percolates.iter().zip(self.periodic).filter(|(_, periodic)| *periodic);
         values.extend(periodic.map(|(percolates, _)| f64::from(u8::from(*percolates))));
+        self.latest = Some((snapshot.gas.time(), census));
         values
     }
 
     fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
-        let bins = Census::of(snapshot.gas).distribution();
+        let time = snapshot.gas.time();
+        let latest = self.latest.take().filter(|(when, census)| *when == time && census.grains() == snapshot.gas.len());
+        let census = latest.map_or_else(|| Census::of(snapshot.gas), |(_, census)| census);
+        let bins = census.distribution();
         if bins.is_empty() {
             return Vec::new();
         }
@@ -147,7 +157,7 @@ impl<V: Vector> Measure<V> for Clusters {
         let share = grains.iter().map(|number| number / snapshot.gas.len() as f64).collect();
         vec![Profile {
             name: "clusters".to_owned(),
-            time: snapshot.gas.time(),
+            time,
             columns: ["size", "clusters_per_size", "clusters", "share_of_grains"]
                 .map(|name| column(name, PURE))
                 .to_vec(),

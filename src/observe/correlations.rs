@@ -1,20 +1,20 @@
 //! `correlations`: density and velocity at two places of a periodic box (Müller 2001, 3.19 to 3.22).
 
+use realfft::num_complex::Complex;
+
 use super::measure::{Column, Dimension, Measure, Profile, Snapshot};
 use super::moments::mean_velocity;
 use super::setting::Setting;
+use super::transform::Transform;
 use super::units::{LENGTH, PURE, column};
 use crate::matter::gas::Gas;
 use crate::matter::grid::Grid;
 use crate::space::Vector;
 
-mod raster;
-
-use raster::Raster;
 
 /// G_nn(r)/n̄², G_∥(r) and G_⊥(r) at every recording, averaged over directions, up to half the shortest side.
 ///
-/// Grains are counted in a raster with sides of about one diameter. The density is n = N_raster/V_raster; the
+/// Grains are counted in a raster with sides of about one diameter, so many that they have no prime factor above 5. The density is n = N_raster/V_raster; the
 /// velocity is the momentum field per mean density, u = Σ(v − v̄)/(n̄ V_raster), which empty places have too.
 /// Of every product the share of a grain with itself is left out, so that independent grains give
 /// −1/N for G_nn/n̄² and −T/(mN) for G_∥ and G_⊥ with T about v̄. G_⊥ is the mean over the D − 1 directions
@@ -101,12 +101,15 @@ impl Products {
             fields[V::DIMENSION][place] += 1.0;
             (0..V::DIMENSION).for_each(|k| fields[k][place] += (velocity - mean)[k]);
         }
-        let plan = Raster::new(&raster.cells()[..V::DIMENSION]);
-        let spectra: Vec<_> = fields.iter().map(|field| plan.forward(field)).collect();
+        let transform = Transform::new(raster.cells().map(|cells| cells as usize));
+        let spectra: Vec<_> = fields.iter().map(|field| transform.forward(field)).collect();
         // Σ over places, per pair of grains, to ⟨…⟩ per n̄²: V/N² · 1/V_raster = cells/N².
         let scale = cells / (grains * grains);
+        // Σ_x ½ (f(x) g(x + r) + g(x) f(x + r)) for every raster vector r: its transform is the real part of f g*.
         let product = |a: usize, b: usize, itself: f64| {
-            let mut values = plan.correlation(&spectra[a], &spectra[b]);
+            let pairs = spectra[a].iter().zip(&spectra[b]);
+            let mut values =
+                transform.backward(pairs.map(|(f, g)| Complex::new((f * g.conj()).re, 0.0)).collect());
             values[0] -= itself;
             values.iter_mut().for_each(|value| *value *= scale);
             values
@@ -134,9 +137,24 @@ fn components<V: Vector>() -> impl Iterator<Item = (usize, usize)> {
 fn raster_of<V: Vector>(grid: &Grid<V>, diameter: f64) -> Grid<V> {
     let mut cells = [1; 3];
     for (axis, cells) in cells.iter_mut().enumerate().take(V::DIMENSION) {
-        *cells = (grid.size()[axis] / diameter).round().max(1.0) as u32;
+        *cells = smooth(grid.size()[axis] / diameter);
     }
     Grid::new(grid.origin(), grid.size(), &cells, &[true; 3])
+}
+
+/// The whole number nearest to `wish` without prime factors above 5: what Fourier transforms are fast for.
+fn smooth(wish: f64) -> u32 {
+    let is_smooth = |number: u32| {
+        let rest = [2, 3, 5].into_iter().fold(number, |mut rest, prime| {
+            while rest.is_multiple_of(prime) {
+                rest /= prime;
+            }
+            rest
+        });
+        rest == 1
+    };
+    let nearest = wish.round().max(1.0) as u32;
+    (0..).flat_map(|far| [nearest.saturating_sub(far), nearest + far]).find(|&n| n > 0 && is_smooth(n)).unwrap_or(1)
 }
 
 impl<V: Vector> Measure<V> for Correlations {

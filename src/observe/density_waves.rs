@@ -6,12 +6,8 @@
 //! 3⁻⁶ = 0.0014 of its amplitude, and with far less in long waves.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
-use rayon::prelude::*;
-use realfft::num_complex::Complex;
-use realfft::{RealFftPlanner, RealToComplex};
-
+use super::transform::Transform;
 use crate::space::Vector;
 
 /// Order of the spline: grid points per axis that a grain touches.
@@ -26,6 +22,15 @@ pub(crate) struct DensityWaves<V> {
     points: [usize; 3],
 }
 
+/// A wave that fits into the box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wave<V> {
+    /// k [1/length].
+    pub(crate) vector: V,
+    /// How many waves it stands for: 2 where −k is meant, too.
+    pub(crate) number: f64,
+}
+
 impl<V: Vector> DensityWaves<V> {
     /// Waves in the box of `size` at `origin` on a grid of `points`: powers of two from eight on, or 1 along an
     /// axis without waves.
@@ -38,39 +43,34 @@ impl<V: Vector> DensityWaves<V> {
         self.points[axis] / 4
     }
 
-    /// The wavenumbers k of all waves [1/length], in the order of [`DensityWaves::powers`].
-    pub(crate) fn wave_vectors(&self) -> Vec<V> {
-        let range = |axis: usize| -(self.highest(axis) as i64)..=self.highest(axis) as i64;
-        let mut vectors = Vec::new();
-        for z in range(2) {
-            for y in range(1) {
-                for x in range(0) {
-                    let n = [x, y, z];
-                    vectors.push(V::from_fn(|axis| 2.0 * PI * n[axis] as f64 / self.size[axis]));
-                }
-            }
-        }
-        vectors
+    /// The waves of [`DensityWaves::powers`], in its order. k and −k have one power: of every such pair that one
+    /// stands here whose first component is above zero, and counts twice; where it is zero both stand here.
+    pub(crate) fn waves(&self) -> Vec<Wave<V>> {
+        let wave = |n: [i64; 3]| Wave {
+            vector: V::from_fn(|axis| 2.0 * PI * n[axis] as f64 / self.size[axis]),
+            number: if n[0] == 0 { 1.0 } else { 2.0 },
+        };
+        self.numbers().map(wave).collect()
     }
 
-    /// |Σ_j exp(−i k·x_j)|² of every wave, the first axis running fastest.
+    /// |Σ_j exp(−i k·x_j)|² of every wave.
     pub(crate) fn powers(&self, positions: &[V]) -> Vec<f64> {
-        let mut planner = RealFftPlanner::new();
-        let mut amplitudes: Vec<Complex<f64>> =
-            self.spread(positions).into_iter().map(|x| Complex::new(x, 0.0)).collect();
-        for axis in 0..3 {
-            let plan = planner.plan_fft_forward(self.points[axis]);
-            amplitudes = transformed(&amplitudes, &plan, self.highest(axis));
-        }
+        let transform = Transform::up_to(self.points, self.highest(0));
+        let amplitudes = transform.forward(&self.spread(positions));
         let windows: [Vec<f64>; 3] = std::array::from_fn(|axis| self.windows(axis));
-        let mut powers = Vec::with_capacity(amplitudes.len());
-        let mut next = amplitudes.iter();
-        for z in &windows[2] {
-            for y in &windows[1] {
-                powers.extend(windows[0].iter().zip(&mut next).map(|(x, a)| a.norm_sqr() / (x * y * z)));
-            }
-        }
-        powers
+        let power = |n: [i64; 3]| {
+            let place = std::array::from_fn(|axis| n[axis].rem_euclid(self.points[axis] as i64) as usize);
+            let window: f64 =
+                (0..3).map(|axis| windows[axis][(n[axis] + self.highest(axis) as i64) as usize]).product();
+            amplitudes[transform.place(place)].norm_sqr() / window
+        };
+        self.numbers().map(power).collect()
+    }
+
+    /// n of every wave, the last axis running fastest.
+    fn numbers(&self) -> impl Iterator<Item = [i64; 3]> {
+        let [x, y, z] = std::array::from_fn(|axis| self.highest(axis) as i64);
+        (0..=x).flat_map(move |nx| (-y..=y).flat_map(move |ny| (-z..=z).map(move |nz| [nx, ny, nz])))
     }
 
     /// Square of the spline's transform for every n_a along `axis`.
@@ -144,44 +144,6 @@ fn spline(fraction: f64) -> [f64; ORDER] {
     values
 }
 
-/// The transforms of all lines of `lines`, that follow each other, for n = −`highest` … `highest`, as `[n][line]`.
-fn transformed(
-    lines: &[Complex<f64>],
-    plan: &Arc<dyn RealToComplex<f64>>,
-    highest: usize,
-) -> Vec<Complex<f64>> {
-    let points = plan.len();
-    if points == 1 {
-        return lines.to_vec();
-    }
-    let count = lines.len() / points;
-    let of_lines: Vec<Vec<Complex<f64>>> =
-        lines.par_chunks_exact(points).map(|line| transformed_line(line, plan, highest)).collect();
-    let mut turned = Vec::with_capacity((2 * highest + 1) * count);
-    for n in 0..=2 * highest {
-        turned.extend(of_lines.iter().map(|line| line[n]));
-    }
-    turned
-}
-
-/// The transform of a complex line, from those of its real and imaginary parts.
-fn transformed_line(
-    line: &[Complex<f64>],
-    plan: &Arc<dyn RealToComplex<f64>>,
-    highest: usize,
-) -> Vec<Complex<f64>> {
-    let transform = |part: fn(&Complex<f64>) -> f64| {
-        let mut values: Vec<f64> = line.iter().map(part).collect();
-        let mut amplitudes = plan.make_output_vec();
-        plan.process(&mut values, &mut amplitudes).expect("both buffers were made for this length");
-        amplitudes
-    };
-    let (real, imaginary) = (transform(|c| c.re), transform(|c| c.im));
-    let times_i = |c: Complex<f64>| Complex::new(-c.im, c.re);
-    let negative = (1..=highest).rev().map(|n| real[n].conj() + times_i(imaginary[n].conj()));
-    negative.chain((0..=highest).map(|n| real[n] + times_i(imaginary[n]))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,9 +157,10 @@ mod tests {
         let waves = DensityWaves::new(origin, size, points);
         let mut largest = [0.0_f64; 2];
         let powers = waves.powers(&positions);
-        let vectors = waves.wave_vectors();
-        assert_eq!(powers.len(), vectors.len());
-        for (k, power) in vectors.into_iter().zip(powers) {
+        let (all, of_axis) = (waves.waves(), |axis| 2 * waves.highest(axis) + 1);
+        assert_eq!(powers.len(), all.len());
+        assert_eq!(all.iter().map(|wave| wave.number).sum::<f64>(), (0..3).map(of_axis).product::<usize>() as f64);
+        for (k, power) in all.into_iter().map(|wave| wave.vector).zip(powers) {
             let sum = |f: fn(f64) -> f64| positions.iter().map(|x| f(k.dot(*x))).sum::<f64>();
             let difference = (power - sum(f64::cos).powi(2) - sum(f64::sin).powi(2)).abs() / 300.0;
             let share = |axis: usize| k[axis].abs() * size[axis] / (2.0 * PI * waves.highest(axis) as f64);

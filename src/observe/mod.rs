@@ -30,6 +30,7 @@ mod samples;
 mod slices;
 #[cfg(test)]
 mod testing;
+mod transform;
 pub(crate) mod units;
 
 use crate::space::Vector;

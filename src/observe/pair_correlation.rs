@@ -123,7 +123,8 @@ impl<V: Vector> PairCorrelation<V> {
         }
         let spans = self.surroundings(sorted, cell);
         let positions = sorted.positions();
-        let (reach, per_width) = (self.reach(), 1.0 / self.width);
+        // Touching grains belong to the bin that begins at contact, whichever way their distance was rounded.
+        let (reach, per_width) = (self.reach(), (1.0 + 1e-12) / self.width);
         for row in sorted.rows(cell) {
             for span in &spans {
                 for there in &positions[span.start.max(row + 1)..span.end.max(row + 1)] {

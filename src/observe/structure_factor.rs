@@ -16,8 +16,6 @@ const LONGEST: usize = 2048;
 const POINTS: usize = 1 << 22;
 /// Grid points of a side with waves at least.
 const FEWEST: usize = 8;
-/// A wave in no shell.
-const NONE: u32 = u32::MAX;
 
 /// S(k) = |Σ_j exp(−i k·x_j)|²/N of all grains, averaged over shells of |k| as wide as the lowest wavenumber of
 /// the longest periodic side; 1 for independent grains, and as k → 0 T (∂ρ/∂p)_T of a fluid in equilibrium.
@@ -33,12 +31,20 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub struct StructureFactor<V> {
     waves: DensityWaves<V>,
-    /// `[wave]`: its shell, or [`NONE`].
-    shell_of: Vec<u32>,
+    /// `[wave]`: where it belongs, if it is in a shell.
+    members: Vec<Option<Member>>,
     /// `[shell]`.
     shells: Vec<Shell>,
     /// `[sample][S of each shell]`.
     samples: Samples,
+}
+
+/// A wave of a shell.
+#[derive(Clone, Copy, Debug)]
+struct Member {
+    shell: u32,
+    /// Waves that it stands for.
+    number: f32,
 }
 
 /// Waves of about one length.
@@ -86,19 +92,20 @@ impl<V: Vector> StructureFactor<V> {
         let highest = wavy.iter().map(|&axis| lowest(axis) * waves.highest(axis) as f64);
         let highest = highest.min_by(f64::total_cmp)? * (1.0 + 1e-12);
         let mut shells = vec![Shell::default(); (highest / width) as usize];
-        let mut shell_of = Vec::new();
-        for wavenumber in waves.wave_vectors().into_iter().map(V::length) {
+        let mut members = Vec::new();
+        for wave in waves.waves() {
+            let wavenumber = wave.vector.length();
             let number = (wavenumber / width).round() as usize;
             let is_inside = wavenumber <= highest && (1..=shells.len()).contains(&number);
-            shell_of.push(if is_inside { number as u32 - 1 } else { NONE });
+            members.push(is_inside.then(|| Member { shell: number as u32 - 1, number: wave.number as f32 }));
             if is_inside {
-                shells[number - 1].waves += 1.0;
-                shells[number - 1].wavenumber += wavenumber;
+                shells[number - 1].waves += wave.number;
+                shells[number - 1].wavenumber += wave.number * wavenumber;
             }
         }
         shells.iter_mut().for_each(|shell| shell.wavenumber /= shell.waves);
         let samples = Samples::new(shells.len());
-        Some(StructureFactor { waves, shell_of, shells, samples })
+        Some(StructureFactor { waves, members, shells, samples })
     }
 
     /// S of each shell `[shell]`; NaN without grains.
@@ -107,9 +114,9 @@ impl<V: Vector> StructureFactor<V> {
             return vec![f64::NAN; self.shells.len()];
         }
         let mut sums = vec![0.0; self.shells.len()];
-        for (power, &shell) in self.waves.powers(gas.positions()).into_iter().zip(&self.shell_of) {
-            if shell != NONE {
-                sums[shell as usize] += power;
+        for (power, member) in self.waves.powers(gas.positions()).into_iter().zip(&self.members) {
+            if let Some(Member { shell, number }) = *member {
+                sums[shell as usize] += f64::from(number) * power;
             }
         }
         sums.iter().zip(&self.shells).map(|(sum, shell)| sum / (shell.waves * gas.len() as f64)).collect()

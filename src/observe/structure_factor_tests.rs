@@ -50,16 +50,16 @@ fn a_lattice_is_seen_at_its_reciprocal_vectors_alone() {
     let gas = at_rest(&bed, (0..256).map(place).collect());
     let measure = StructureFactor::new(&bed.setting).unwrap();
     let unit = 2.0 * PI / 64.0;
-    let mut peaks = 0;
-    for (wave, power) in measure.waves.wave_vectors().iter().zip(measure.waves.powers(gas.positions())) {
-        let n = *wave / unit;
+    let mut peaks = 0.0;
+    for (wave, power) in measure.waves.waves().into_iter().zip(measure.waves.powers(gas.positions())) {
+        let n = wave.vector / unit;
         let is_peak = n.x.round() as i64 % 16 == 0 && n.y.round() as i64 % 16 == 0;
         let expected = if is_peak { 256.0 } else { 0.0 };
         // Peaks beyond the grid enter with 3⁻⁶ of their amplitude, which is as high, at either end of either axis.
         assert!((power / 256.0 - expected).abs() < 256.0 * 4.0 * 3.0_f64.powi(-6), "{n}: {power}");
-        peaks += i32::from(is_peak);
+        peaks += if is_peak { wave.number } else { 0.0 };
     }
-    assert_eq!(peaks, 25);
+    assert_eq!(peaks, 25.0);
     let found = measure.look(&gas);
     // Shell 16 has four peaks among its waves, shell 23 (16 √2 = 22.6) four, shell 32 four.
     for (shell, s) in found.iter().enumerate() {
