@@ -5,7 +5,7 @@
 //! | `dilute` | 0.02 | homogeneous, elastic |
 //! | `gas` | 0.25 | homogeneous, elastic |
 //! | `dense` | 0.5 (3D: 0.4) | homogeneous, elastic |
-//! | `clustered` | 0.25 | r = 0.8, after as many collisions as the built-in scenario `clustering` makes |
+//! | `clustered` | 0.25 | r = 0.8, as the built-in scenario `clustering`, once there are clusters |
 //! | `heap` | | the box, the walls and the rules of `heap-full`, scaled to the number of grains, and a heap at rest |
 //!
 //! The first four are periodic, with ten grains per cell.
@@ -26,7 +26,7 @@ pub(crate) const VOLUME_FRACTION: f64 = 0.25;
 const PER_CELL: f64 = 10.0;
 /// Restitution of the scenario `clustering`.
 const CLUSTERING_RESTITUTION: f64 = 0.8;
-/// Collisions per particle until there are clusters, in two dimensions (the end of that scenario) and in three.
+/// Collisions per particle until there are clusters, in two dimensions and in three.
 const CLUSTERING_COLLISIONS: [f64; 2] = [100.0, 300.0];
 /// Collisions per particle and step on the way there.
 const CLUSTERING_STEP: f64 = 0.5;

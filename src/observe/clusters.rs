@@ -145,7 +145,10 @@ impl<V: Vector> Measure<V> for Clusters {
 
     fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
         let time = snapshot.gas.time();
-        let latest = self.latest.take().filter(|(when, census)| *when == time && census.grains() == snapshot.gas.len());
+        let latest = self
+            .latest
+            .take()
+            .filter(|(when, census)| *when == time && census.grains() == snapshot.gas.len());
         let census = latest.map_or_else(|| Census::of(snapshot.gas), |(_, census)| census);
         let bins = census.distribution();
         if bins.is_empty() {

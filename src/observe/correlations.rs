@@ -11,7 +11,6 @@ use crate::matter::gas::Gas;
 use crate::matter::grid::Grid;
 use crate::space::Vector;
 
-
 /// G_nn(r)/n̄², G_∥(r) and G_⊥(r) at every recording, averaged over directions, up to half the shortest side.
 ///
 /// Grains are counted in a raster with sides of about one diameter, so many that they have no prime factor above 5. The density is n = N_raster/V_raster; the
@@ -154,7 +153,10 @@ fn smooth(wish: f64) -> u32 {
         rest == 1
     };
     let nearest = wish.round().max(1.0) as u32;
-    (0..).flat_map(|far| [nearest.saturating_sub(far), nearest + far]).find(|&n| n > 0 && is_smooth(n)).unwrap_or(1)
+    (0..)
+        .flat_map(|far| [nearest.saturating_sub(far), nearest + far])
+        .find(|&n| n > 0 && is_smooth(n))
+        .unwrap_or(1)
 }
 
 impl<V: Vector> Measure<V> for Correlations {

@@ -17,9 +17,9 @@ fn quarters(counts: [usize; 4]) -> Gas<DVec2> {
 #[test]
 fn four_regions_by_hand() {
     let state = (quarters([50, 10, 80, 20]), Totals::default());
-    // A grain is π/4 of 25. Quantiles at 3 q of the order 10, 20, 50, 80; variance 1000, mean 40.
+    // A grain is π/4 of 25. Quantiles at 4 q of the order 10, 20, 50, 80, whose middles are ½ … 3½; variance 1000, mean 40.
     let share = FRAC_PI_4 / 25.0;
-    let expected = [10.3, 13.0, 17.5, 35.0, 57.5, 71.0, 79.1].map(|content| content * share);
+    let expected = [10.0, 10.0, 15.0, 35.0, 65.0, 80.0, 80.0].map(|content| content * share);
     let found = show(&mut DensityDistribution::new(), &state);
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
@@ -30,6 +30,15 @@ fn four_regions_by_hand() {
     // One grain moved, and other quantiles see it.
     let moved = show(&mut DensityDistribution::new(), &(quarters([51, 10, 80, 19]), Totals::default()));
     assert!((moved[3] - expected[3]).abs() < 1e-14 && (moved[2] - expected[2]).abs() > 0.1 * share);
+}
+
+#[test]
+fn equal_regions_share_a_middle() {
+    let found = show(&mut DensityDistribution::new(), &(quarters([20, 10, 110, 20]), Totals::default()));
+    // 10 in the middle ½, 20 twice in 2, 110 in 3½: a quarter is at 1, a half at 2, three quarters at 3.
+    for (found, content) in found[2..5].iter().zip([10.0 + 10.0 / 3.0, 20.0, 80.0]) {
+        assert!((found - content * FRAC_PI_4 / 25.0).abs() < 1e-14, "{found} {content}");
+    }
 }
 
 #[test]

@@ -159,7 +159,10 @@ mod tests {
         let powers = waves.powers(&positions);
         let (all, of_axis) = (waves.waves(), |axis| 2 * waves.highest(axis) + 1);
         assert_eq!(powers.len(), all.len());
-        assert_eq!(all.iter().map(|wave| wave.number).sum::<f64>(), (0..3).map(of_axis).product::<usize>() as f64);
+        assert_eq!(
+            all.iter().map(|wave| wave.number).sum::<f64>(),
+            (0..3).map(of_axis).product::<usize>() as f64
+        );
         for (k, power) in all.into_iter().map(|wave| wave.vector).zip(powers) {
             let sum = |f: fn(f64) -> f64| positions.iter().map(|x| f(k.dot(*x))).sum::<f64>();
             let difference = (power - sum(f64::cos).powi(2) - sum(f64::sin).powi(2)).abs() / 300.0;
