@@ -94,28 +94,7 @@ pub(super) const TABLES: &[(&str, &[&str])] = &[
     ("record", RECORD),
 ];
 
-/// Names of the measures that `record.measures` accepts.
-pub const MEASURES: &[&str] = &[
-    "energy",
-    "velocity-profile",
-    "density-profile",
-    "wall-stress",
-    "density-contrast",
-    "spectrum",
-    "flow",
-    "heap",
-    "centre-of-mass",
-    "pressure",
-    "collisions",
-    "impact-parameter",
-    "velocity-distribution",
-    "density-distribution",
-    "pair-correlation",
-    "structure-factor",
-    "temperature-profile",
-    "correlations",
-    "clusters",
-];
+pub use crate::observe::NAMES as MEASURES;
 
 /// Keys of `[initial]` that a start from a log leaves no room for; setting `positions` to a log on the
 /// command line removes them.
