@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::axis::Scale;
 use super::escape::escape;
 use super::number::{count, number, with_error};
+use super::page::{document, section};
 use super::plot::{Curve, Ink, Plot, Stroke};
 use crate::engine::report::IMPACT_BINS;
 use crate::statistics::Estimate;
@@ -112,23 +113,12 @@ pub fn calibration_page(calibration: &Calibration) -> String {
     );
     let plots = [course_of_c(calibration), densities(calibration), entry_probability(calibration)];
     let plots: String = plots.iter().flatten().map(Plot::html).collect();
-    let _ = writeln!(
-        body,
-        "<section>\n<h2>What was measured</h2>\n<div class=\"plots\">\n{plots}</div>\n</section>"
-    );
+    body.push_str(&section("What was measured", &format!("<div class=\"plots\">\n{plots}</div>\n")));
     body.push_str(&table(calibration));
     for remark in &calibration.remarks {
         let _ = writeln!(body, "<p class=\"note\">{}</p>", escape(remark));
     }
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <link rel=\"icon\" href=\"data:,\">\n<title>{} · calibration · grainflow</title>\n<style>\n{}</style>\n</head>\n\
-         <body>\n<main>\n{body}<footer>Written by grainflow {}.</footer>\n</main>\n</body>\n</html>\n",
-        escape(&calibration.title),
-        include_str!("page.css"),
-        env!("CARGO_PKG_VERSION"),
-    )
+    document(&format!("{}: calibration", calibration.title), &body, env!("CARGO_PKG_VERSION"))
 }
 
 /// c against collisions per particle.
