@@ -19,6 +19,8 @@ pub(super) struct Sampled {
     pub(super) x: Vec<f64>,
     /// NaN where it is not defined.
     pub(super) y: Vec<f64>,
+    /// Standard errors of y that the run states; empty where it states none.
+    pub(super) errors: Vec<f64>,
 }
 
 impl Sampled {
@@ -42,6 +44,33 @@ impl Sampled {
     /// Whether all of its values are above zero.
     pub(super) fn is_positive(&self) -> bool {
         self.has_values() && self.y.iter().all(|y| y.is_nan() || *y > 0.0)
+    }
+
+    /// The first and the last x with a value.
+    pub(super) fn range(&self) -> Option<[f64; 2]> {
+        let known = || self.x.iter().zip(&self.y).filter(|(_, y)| y.is_finite()).map(|(x, _)| *x);
+        Some([known().next()?, known().next_back()?])
+    }
+
+    /// The largest value over the smallest.
+    pub(super) fn span(&self) -> f64 {
+        let known = || self.y.iter().copied().filter(|y| y.is_finite());
+        known().fold(0.0, f64::max) / known().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether its last value is below `share` of its first.
+    pub(super) fn falls_below(&self, share: f64) -> bool {
+        let known = || self.y.iter().filter(|y| y.is_finite());
+        known().next().zip(known().next_back()).is_some_and(|(first, last)| *last < share * first)
+    }
+
+    /// Its errors at `places`, straight between its points; empty where it has none.
+    pub(super) fn errors_at(&self, places: &[f64]) -> Vec<f64> {
+        if self.errors.is_empty() {
+            return Vec::new();
+        }
+        let errors = Sampled { x: self.x.clone(), y: self.errors.clone(), errors: Vec::new() };
+        errors.at(places, Path::Straight)
     }
 
     /// Whether times lie like powers of a number.

@@ -3,7 +3,7 @@
 use crate::statistics::{blocks, mean, straight_line};
 
 /// Independent stretches that a series must hold before its scatter says how well its blocks are known.
-const LEAST_STRETCHES: f64 = 20.0;
+pub(super) const LEAST_STRETCHES: f64 = 20.0;
 /// The sum of autocorrelations ends where it is this many correlation times long (Sokal 1997, 3).
 const WINDOW: f64 = 5.0;
 
@@ -14,6 +14,8 @@ pub(super) struct Blocked {
     pub(super) values: Vec<f64>,
     /// For each value the standard error of that mean.
     pub(super) errors: Vec<f64>,
+    /// The mean of the whole, and its standard error.
+    pub(super) whole: [f64; 2],
     /// Blocks.
     pub(super) blocks: usize,
     /// Degrees of freedom of the errors.
@@ -31,7 +33,7 @@ pub(super) fn blocked(series: &[f64]) -> Option<Blocked> {
     let line = straight_line(&places, series)?;
     let rest: Vec<f64> =
         places.iter().zip(series).map(|(x, y)| y - line.intercept - line.slope * x).collect();
-    let correlation = correlation_time(&rest)?;
+    let correlation = correlation_time(&[rest.clone()])?;
     let stretches = series.len() as f64 / (2.0 * correlation);
     if stretches < LEAST_STRETCHES {
         return None;
@@ -42,6 +44,7 @@ pub(super) fn blocked(series: &[f64]) -> Option<Blocked> {
     let mut blocked = Blocked {
         values: Vec::with_capacity(series.len()),
         errors: Vec::with_capacity(series.len()),
+        whole: [mean(series)?, (variance / stretches).sqrt()],
         blocks: 0,
         freedom: stretches - 2.0,
         correlation,
@@ -57,16 +60,18 @@ pub(super) fn blocked(series: &[f64]) -> Option<Blocked> {
     Some(blocked)
 }
 
-/// 1/2 + Σ ρ(k), at least 1/2; `None` where nothing varies.
-fn correlation_time(rest: &[f64]) -> Option<f64> {
+/// 1/2 + Σ ρ(k) of all `rows` together, each of which has the mean 0 and the same length; at least 1/2; `None` where
+/// nothing varies.
+pub(super) fn correlation_time(rows: &[Vec<f64>]) -> Option<f64> {
     let product =
-        |lag: usize| rest.iter().zip(&rest[lag..]).map(|(a, b)| a * b).sum::<f64>() / rest.len() as f64;
+        |lag: usize| rows.iter().flat_map(|row| row.iter().zip(&row[lag..])).map(|(a, b)| a * b).sum::<f64>();
+    let length = rows.iter().map(Vec::len).min().filter(|length| *length > 0)?;
     let variance = product(0);
     if !(variance > 0.0 && variance.is_finite()) {
         return None;
     }
     let mut time = 0.5;
-    for lag in 1..rest.len() {
+    for lag in 1..length {
         time += product(lag) / variance;
         if lag as f64 >= WINDOW * time {
             break;

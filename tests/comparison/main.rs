@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod chance;
+
 use grainflow::comparison::model::{Compared, Comparison, Difference, Verdict};
 use grainflow::comparison::{Entry, Head, Replica, assemble};
 use grainflow::comparison::{csv, json};
