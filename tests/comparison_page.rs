@@ -3,7 +3,8 @@
 //! `GRAINFLOW_REPORT_SAMPLES=DIR cargo test --test comparison_page` leaves the page in DIR, to be looked at.
 
 use grainflow::comparison::model::{
-    Basis, Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve, Verdict,
+    Basis, Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve,
+    Verdict,
 };
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::contents::{Frame, Walls};

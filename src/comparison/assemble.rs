@@ -119,7 +119,8 @@ fn memories(comparison: &Comparison, entries: &[Entry]) -> Vec<String> {
     let of_contestant = |(place, entry): (usize, &Entry)| {
         let of_series = |compared: &Compared| {
             let difference = compared.differences.get(place)?.as_ref()?;
-            let is_of_one = matches!(difference.basis, Basis::Blocks | Basis::Growth) && entry.runs.len() == 1;
+            let is_of_one =
+                matches!(difference.basis, Basis::Blocks | Basis::Growth) && entry.runs.len() == 1;
             let Correlation { time, clock } = difference.correlation.as_ref().filter(|_| is_of_one)?;
             let over = if compared.abscissa.name == "time" { "" } else { " over collisions" };
             Some(format!("{}{over} {} in {}", in_words(&compared.name), rounded(*time), in_words(clock)))

@@ -38,10 +38,14 @@ pub(super) fn without_short<T>(
             }
             let end = range(&curve).map_or(0.0, |ends| ends[1]);
             let name = name(entry, number);
-            say(remarks, format!(
-                "{name} ends at {what} {}, long before the others of {}, and is left out of what runs along {what}.",
-                rounded(end), entry.label
-            ));
+            say(
+                remarks,
+                format!(
+                    "{name} ends at {what} {}, long before the others of {}, and is left out of what runs along {what}.",
+                    rounded(end),
+                    entry.label
+                ),
+            );
         }
         kept
     };
@@ -59,15 +63,23 @@ pub(super) fn name(entry: &Entry, number: u32) -> String {
 /// Says that `what` is compared up to `end` only, where that is much less than the reference has.
 pub(super) fn say_where_it_ends(what: &str, [first, end]: [f64; 2], whole: [f64; 2], remarks: &mut Remarks) {
     if end - first < SHORT * (whole[1] - whole[0]) {
-        say(remarks, format!(
-            "Along {what}, curves are compared from {} to {}, what at least two engines have of {} to {}.",
-            rounded(first), rounded(end), rounded(whole[0]), rounded(whole[1])
-        ));
+        say(
+            remarks,
+            format!(
+                "Along {what}, curves are compared from {} to {}, what at least two engines have of {} to {}.",
+                rounded(first),
+                rounded(end),
+                rounded(whole[0]),
+                rounded(whole[1])
+            ),
+        );
     }
 }
 
 /// A smoothed size of a quantity: the mean of the values at each place that are known.
 pub(super) fn level(curves: &[Vec<f64>], places: usize) -> Vec<f64> {
-    let at = |k: usize| -> Vec<f64> { curves.iter().map(|values| values[k]).filter(|value| value.is_finite()).collect() };
+    let at = |k: usize| -> Vec<f64> {
+        curves.iter().map(|values| values[k]).filter(|value| value.is_finite()).collect()
+    };
     (0..places).map(|k| mean(&at(k)).unwrap_or(f64::NAN).abs()).collect()
 }

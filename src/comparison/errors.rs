@@ -59,7 +59,7 @@ pub(super) enum Missing {
     NoColumn,
     /// A single series that neither settles nor begins alike in both runs.
     BeginsApart,
-    /// A single series of fewer than twenty independent stretches.
+    /// A single series that adds less than twenty independent stretches.
     TooShort,
 }
 
@@ -93,7 +93,16 @@ impl Raw {
     /// `values` of which nothing more is known.
     pub(super) fn bare(values: Vec<f64>, missing: Missing) -> Self {
         let errors = vec![f64::NAN; values.len()];
-        Raw { values, errors, freedom: 1.0, compared: 1, whole: None, basis: Basis::Nothing, correlation: None, missing }
+        Raw {
+            values,
+            errors,
+            freedom: 1.0,
+            compared: 1,
+            whole: None,
+            basis: Basis::Nothing,
+            correlation: None,
+            missing,
+        }
     }
 
     /// Differences that all pairs share by chance, as counts of few grains do, get the error of two independent means
@@ -160,11 +169,17 @@ impl Raw {
                 let begins_alike = rest.iter().all(|row| row.first() == Some(&0.0));
                 let walk = if begins_alike { walk::of_replicas(rest, &at(clock)) } else { None };
                 let Some(walk) = walk else { return };
-                (walk.errors, walk.freedom, Basis::Growth, Correlation { time: walk.correlation, clock: (*name).to_owned() })
+                (
+                    walk.errors,
+                    walk.freedom,
+                    Basis::Growth,
+                    Correlation { time: walk.correlation, clock: (*name).to_owned() },
+                )
             }
             (Some(noise), _) => {
                 let gap = mean_gap(&places);
-                let correlation = Correlation { time: noise.correlation * gap, clock: along.abscissa.to_owned() };
+                let correlation =
+                    Correlation { time: noise.correlation * gap, clock: along.abscissa.to_owned() };
                 (noise.errors, noise.freedom, Basis::Neighbours, correlation)
             }
             (None, _) => return,

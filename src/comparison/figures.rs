@@ -93,7 +93,8 @@ fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
     }
     let drawn = |entry: &Entry| -> Vec<Drawn> {
         let runs = entry.runs.iter().filter_map(|run| Some((run.number, number(run, name)?)));
-        runs.map(|(replica, value)| Drawn { replica, values: vec![value / scale], errors: Vec::new() }).collect()
+        runs.map(|(replica, value)| Drawn { replica, values: vec![value / scale], errors: Vec::new() })
+            .collect()
     };
     let along = Along { places: &[0.0], level: vec![1.0], ..Along::default() };
     difference(&drawn(own), &drawn(other), &along, terms, &subject)

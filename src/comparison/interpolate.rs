@@ -1,5 +1,7 @@
 //! The value of a curve between its points; never beyond its ends.
 
+use crate::statistics::{blocks, mean};
+
 /// How a quantity goes from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Path {
@@ -52,10 +54,11 @@ impl Sampled {
         Some([known().next()?, known().next_back()?])
     }
 
-    /// The largest value over the smallest.
+    /// The largest over the smallest of the means of ten parts of it, which single values cannot sway.
     pub(super) fn span(&self) -> f64 {
-        let known = || self.y.iter().copied().filter(|y| y.is_finite());
-        known().fold(0.0, f64::max) / known().fold(f64::INFINITY, f64::min)
+        let known: Vec<f64> = self.y.iter().copied().filter(|y| y.is_finite()).collect();
+        let means = || blocks(known.len()).filter_map(|block| mean(&known[block]));
+        means().fold(0.0, f64::max) / means().fold(f64::INFINITY, f64::min)
     }
 
     /// Whether its last value is below `share` of its first.

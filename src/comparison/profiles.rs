@@ -34,7 +34,8 @@ fn of_name(entries: &[Entry], reference: usize, name: &str, remarks: &mut Remark
     let of_entry = |entry| -> Vec<(u32, Recordings<'_>)> { recordings(entry, name) };
     let all: Vec<Vec<(u32, Recordings<'_>)>> = entries.iter().map(of_entry).collect();
     let all = without_short(entries, all, range, &format!("the time of {name}"), remarks);
-    let Some(leading) = [reference].into_iter().chain(0..all.len()).find_map(|place| all[place].first()) else {
+    let Some(leading) = [reference].into_iter().chain(0..all.len()).find_map(|place| all[place].first())
+    else {
         return Vec::new();
     };
     let runs = || all.iter().flatten().map(|(_, recordings)| recordings);
@@ -42,7 +43,8 @@ fn of_name(entries: &[Entry], reference: usize, name: &str, remarks: &mut Remark
         vec![None]
     } else {
         let ends = runs().filter_map(range);
-        let ends = ends.fold([f64::NEG_INFINITY, f64::INFINITY], |[a, b], [first, last]| [a.max(first), b.min(last)]);
+        let ends = ends
+            .fold([f64::NEG_INFINITY, f64::INFINITY], |[a, b], [first, last]| [a.max(first), b.min(last)]);
         if ends[0] > ends[1] {
             say(remarks, format!("{name}: the runs have no time in common, and it is not compared."));
             return Vec::new();
@@ -74,7 +76,8 @@ fn of_name(entries: &[Entry], reference: usize, name: &str, remarks: &mut Remark
 /// `[run]`: what those that have the profile have recorded of it.
 fn recordings<'a>(entry: &'a Entry, name: &str) -> Vec<(u32, Recordings<'a>)> {
     let is_it = |profile: &&Profile| profile.name == name && profile.values.len() == profile.columns.len();
-    let of_run = |run: &'a Replica| (run.number, run.log.profiles.iter().filter(is_it).collect::<Recordings<'a>>());
+    let of_run =
+        |run: &'a Replica| (run.number, run.log.profiles.iter().filter(is_it).collect::<Recordings<'a>>());
     entry.runs.iter().map(of_run).filter(|(_, recordings)| !recordings.is_empty()).collect()
 }
 
@@ -130,7 +133,8 @@ fn curve(profile: &Profile, pattern: &Profile, column: usize) -> Option<Sampled>
     let states = profile.columns.get(y + 1).is_some_and(|next| next.name == STANDARD_ERROR);
     let mut curve = Sampled::new(points);
     if states {
-        let errors = Sampled::new(profile.values[x].iter().copied().zip(profile.values[y + 1].iter().copied()));
+        let errors =
+            Sampled::new(profile.values[x].iter().copied().zip(profile.values[y + 1].iter().copied()));
         curve.errors = errors.y;
     }
     Some(curve)

@@ -28,15 +28,15 @@ pub(super) struct Scatter {
 /// and never more than half of the curve. `None` where nothing scatters.
 pub(super) fn of_noise(rest: &[Vec<f64>], level: &[f64]) -> Option<Scatter> {
     let (replicas, places) = (rest.len() as f64, level.len());
-    let variances: Vec<f64> = (0..places)
-        .map(|k| rest.iter().map(|row| row[k] * row[k]).sum::<f64>() / (replicas - 1.0))
-        .collect();
+    let variances: Vec<f64> =
+        (0..places).map(|k| rest.iter().map(|row| row[k] * row[k]).sum::<f64>() / (replicas - 1.0)).collect();
     let scale = scale(&variances, level);
     let even: Vec<Vec<f64>> =
         rest.iter().map(|row| row.iter().zip(&scale).map(|(value, scale)| value / scale).collect()).collect();
     let correlation = correlation_time(&even)?;
     let wanted = FREEDOM * 2.0 * correlation / (replicas - 1.0);
-    let width = if replicas - 1.0 >= FREEDOM { 1 } else { (wanted.ceil() as usize).clamp(1, (places / 2).max(1)) };
+    let width =
+        if replicas - 1.0 >= FREEDOM { 1 } else { (wanted.ceil() as usize).clamp(1, (places / 2).max(1)) };
     let stretches = (width as f64 / (2.0 * correlation)).max(1.0);
     // Less than one stretch tells no more than its middle.
     let width = if stretches > 1.0 { width } else { 1 };
@@ -63,7 +63,8 @@ fn scale(variances: &[f64], level: &[f64]) -> Vec<f64> {
     }
     let unevenness = |power: f64| {
         let logarithms = variances.iter().zip(powers(power)).filter(|(variance, _)| **variance > 0.0);
-        let logarithms: Vec<f64> = logarithms.map(|(variance, scale)| (variance / (scale * scale)).ln()).collect();
+        let logarithms: Vec<f64> =
+            logarithms.map(|(variance, scale)| (variance / (scale * scale)).ln()).collect();
         standard_deviation(&logarithms).unwrap_or(0.0)
     };
     let best = POWERS.into_iter().min_by(|a, b| unevenness(*a).total_cmp(&unevenness(*b))).unwrap_or(0.0);

@@ -58,7 +58,8 @@ fn against(
     let abscissa = Column { name: abscissa.to_owned(), unit };
     // A series is interpolated as what it is, and judged so.
     let is_energy = column.unit == ENERGY;
-    let form = Form { name: &column.name, abscissa, ordinate: column, time: None, is_series: true, is_energy };
+    let form =
+        Form { name: &column.name, abscissa, ordinate: column, time: None, is_series: true, is_energy };
     compare(entries, reference, &curves, form, remarks)
 }
 
@@ -108,7 +109,8 @@ fn drawn_at(runs: &[(u32, Sampled)], places: &[f64], path: Path) -> Vec<Drawn> {
 /// Those of the leading places, without those at the ends where less than two contestants have a whole curve.
 fn shared(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
     let covers = |runs: &Vec<(u32, Sampled)>, place: f64| {
-        let holds = |curve: &Sampled| curve.range().is_some_and(|[first, last]| first <= place && place <= last);
+        let holds =
+            |curve: &Sampled| curve.range().is_some_and(|[first, last]| first <= place && place <= last);
         !runs.is_empty() && runs.iter().all(|(_, curve)| holds(curve))
     };
     let is_shared = |place: &f64| curves.iter().filter(|runs| covers(runs, *place)).count() > 1;
@@ -193,6 +195,7 @@ impl Form<'_> {
 /// What counts the events by which a curve over `abscissa` changes: collisions where the log has them at all places.
 fn clock<'a>(abscissa: &'a str, places: &[f64], collisions: &Sampled) -> (Vec<f64>, &'a str) {
     let counted = collisions.at(places, Path::Straight);
-    let rises = counted.iter().all(|count| count.is_finite()) && counted.windows(2).all(|pair| pair[0] < pair[1]);
+    let rises =
+        counted.iter().all(|count| count.is_finite()) && counted.windows(2).all(|pair| pair[0] < pair[1]);
     if abscissa == TIME && rises { (counted, COLLISIONS) } else { (places.to_vec(), abscissa) }
 }

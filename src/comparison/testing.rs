@@ -1,8 +1,8 @@
 //! A made-up comparison for tests of what is written.
 
 use super::model::{
-    Basis, Compared, ComparedFigure, Comparison, Contestant, Correlation, Cost, CurveOf, Difference, Overall, Peak,
-    TheoryCurve, Verdict,
+    Basis, Compared, ComparedFigure, Comparison, Contestant, Correlation, Cost, CurveOf, Difference, Overall,
+    Peak, TheoryCurve, Verdict,
 };
 use crate::observe::units::{ENERGY, PURE, column};
 use crate::record::contents::Frame;

@@ -22,7 +22,9 @@ pub fn add(comparison: &mut Comparison) {
         Ok(AnyScenario::Two(scenario)) => Theory::of(&scenario, comparison).add(comparison),
         Ok(AnyScenario::Three(scenario)) => Theory::of(&scenario, comparison).add(comparison),
         Err(_) if comparison.scenario_text.is_empty() => {}
-        Err(error) => comparison.remarks.push(format!("Theory is not shown: the scenario cannot be read ({error}).")),
+        Err(error) => {
+            comparison.remarks.push(format!("Theory is not shown: the scenario cannot be read ({error})."))
+        }
     }
 }
 

@@ -156,7 +156,10 @@ fn what_is_driven_or_unknown_has_no_law() {
     unknown.scenario_text = "nonsense".to_owned();
     let mut same = unknown.clone();
     add(&mut unknown);
-    assert!(unknown.remarks[0].starts_with("Theory is not shown: the scenario cannot be read ("), "{unknown:?}");
+    assert!(
+        unknown.remarks[0].starts_with("Theory is not shown: the scenario cannot be read ("),
+        "{unknown:?}"
+    );
     same.remarks = unknown.remarks.clone();
     assert_eq!(unknown, same);
 }

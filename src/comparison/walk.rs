@@ -5,9 +5,11 @@
 //! homogeneous, whatever τ. Such a curve never has a scatter about which it settles, but its growth over distinct
 //! stretches is nearly independent, and the error of a sum of independent terms follows from their scatter.
 
-use super::memory::{LEAST_STRETCHES, correlation_time};
+use super::memory::correlation_time;
 use super::scatter::{FREEDOM, window};
 
+/// Independent stretches of growth that one run must hold before their scatter says anything.
+const LEAST_STRETCHES: f64 = 20.0;
 /// Degrees of freedom that replicas must give together; fewer are no better than the replicas themselves.
 const LEAST_FREEDOM: f64 = 10.0;
 /// Parameters of the rate at which two curves of one run part: it is linear in the clock.
@@ -105,7 +107,8 @@ impl Growth {
             // Long gaps weigh more: so many alike would tell as much.
             let alike = span * span / gaps.iter().map(|gap| gap * gap).sum::<f64>();
             freedom = freedom.min(each * alike / (2.0 * correlation));
-            let squares: f64 = self.rest.iter().flat_map(|row| &row[window.clone()]).map(|step| step * step).sum();
+            let squares: f64 =
+                self.rest.iter().flat_map(|row| &row[window.clone()]).map(|step| step * step).sum();
             variance += squares / (each * span) * 2.0 * correlation * self.gaps[k];
             errors.push(variance.sqrt());
         }

@@ -96,12 +96,17 @@ pub(super) fn unknown_sentence(missing: Missing, subject: &Subject<'_>) -> Strin
         Missing::NotStated => "a single run states none",
         Missing::NoColumn => "a single profile has no column of errors",
         Missing::BeginsApart => {
-            "of one run each, begun at different values, with a difference that does not settle about a mean"
+            "a single run of each begins at another value, and their difference does not settle about a mean"
         }
-        Missing::TooShort => "one run of each holds fewer than 20 independent stretches",
+        Missing::TooShort => {
+            "what one run of each adds from recording to recording holds fewer than 20 independent stretches"
+        }
     };
     let Subject { label, reference, .. } = subject;
-    format!("{label}: no error is known for {} ({why}), so nothing is said against {reference}", subject.what())
+    format!(
+        "{label}: no error is known for {} ({why}), so nothing is said against {reference}",
+        subject.what()
+    )
 }
 
 /// What `difference` says at `places`, with its `ratios` to its errors; where it counts, at the place that is `shown`.
