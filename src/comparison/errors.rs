@@ -55,6 +55,8 @@ pub(super) struct Along<'a> {
 pub(super) enum Missing {
     /// A single figure that its run states no error of.
     NotStated,
+    /// A single figure whose series remembers longer than the blocks last from which its run states an error.
+    Remembers,
     /// A single profile without a column of errors.
     NoColumn,
     /// A single series that neither settles nor begins alike in both runs.

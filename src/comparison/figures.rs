@@ -6,10 +6,11 @@ use super::assemble::{Entry, Replica};
 use super::difference::{apart, difference};
 use super::errors::{Along, Drawn, Missing, Terms, as_stated};
 use super::judge::judged;
+use super::memory::longest_memory;
 use super::model::{ComparedFigure, Difference};
 use super::words::{Subject, in_words};
 use crate::observe::measure::Dimension;
-use crate::statistics::{Estimate, average, mean};
+use crate::statistics::{BLOCKS, Estimate, average, mean};
 
 /// Figures that every run has and that say something of its physics.
 const COMMON: [&str; 5] =
@@ -88,7 +89,11 @@ fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
     if let ([a], [b]) = (&own.runs[..], &other.runs[..]) {
         let value = apart(number(a, name)? / scale, number(b, name)? / scale, terms);
         let stated = |run: &Replica| [number(run, &error_key(name)).map_or(f64::NAN, |error| error / scale)];
-        let raw = as_stated(vec![value], [&stated(a), &stated(b)], Missing::NotStated);
+        let (errors, missing) = match [a, b].iter().any(|run| outlives_its_blocks(run, name)) {
+            true => ([[f64::NAN]; 2], Missing::Remembers),
+            false => ([a, b].map(stated), Missing::NotStated),
+        };
+        let raw = as_stated(vec![value], [&errors[0], &errors[1]], missing);
         return Some(judged(raw, &Along { places: &[0.0], ..Along::default() }, terms, &subject));
     }
     let drawn = |entry: &Entry| -> Vec<Drawn> {
@@ -98,6 +103,17 @@ fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
     };
     let along = Along { places: &[0.0], level: vec![1.0], ..Along::default() };
     difference(&drawn(own), &drawn(other), &along, terms, &subject)
+}
+
+/// Whether the series of a figure remembers longer than a block of the second half of the run lasts: a run cuts that
+/// into [`BLOCKS`], and its error of the figure is then too small. Of a figure without a series nobody knows.
+fn outlives_its_blocks(run: &Replica, name: &str) -> bool {
+    let Some(column) = run.log.columns.iter().position(|column| column.name == name) else { return false };
+    let values: Vec<f64> = run.log.series.iter().filter_map(|row| row.get(column).copied()).collect();
+    let late = values[values.len() / 2..].iter().copied().filter(|value| value.is_finite());
+    let late: Vec<f64> = late.collect();
+    let block = (late.len() as f64 / BLOCKS as f64).max(2.0);
+    longest_memory(&late).is_some_and(|memory| 2.0 * memory > block)
 }
 
 /// The unit of a figure, from the series where that has it.

@@ -68,6 +68,12 @@ pub(super) fn correlation_time(rows: &[Vec<f64>]) -> Option<f64> {
     Some(memory(rows)?.time)
 }
 
+/// The largest partial sum of 1/2 + Σ ρ(k) of `series` about its mean, in places.
+pub(super) fn longest_memory(series: &[f64]) -> Option<f64> {
+    let centre = mean(series)?;
+    Some(memory(&[series.iter().map(|value| value - centre).collect()])?.longest)
+}
+
 /// What a sum of autocorrelations comes to.
 struct Memory {
     /// At its end.

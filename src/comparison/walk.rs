@@ -12,6 +12,10 @@ use super::scatter::{FREEDOM, window};
 const LEAST_STRETCHES: f64 = 20.0;
 /// Degrees of freedom that replicas must give together; fewer are no better than the replicas themselves.
 const LEAST_FREEDOM: f64 = 10.0;
+/// What a gas keeps of its beginning changes its rate for as long as it runs, and no run by itself shows that. Of 40 seeds
+/// of homogeneous cooling until τ = 20, ln E of event-driven dynamics has 1.9 times the variance that its growth in
+/// distinct stretches says, that of HSMC 1.0 times; variances are taken as twice as large.
+const KEPT: f64 = 2.0;
 /// Parameters of the rate at which two curves of one run part: it is linear in the clock.
 const RATE: f64 = 2.0;
 
@@ -30,7 +34,7 @@ pub(super) struct Walk {
 ///
 /// The variance that a unit of the clock adds is that of the growth between neighbouring places, times 2t for its
 /// integrated autocorrelation time t, as a mean over a window of places that is as narrow as 30 degrees of freedom
-/// allow. The variance at a place is the sum of what was added up to there.
+/// allow. The variance at a place is the sum of what was added up to there, doubled: see [`KEPT`].
 pub(super) fn of_replicas(rest: &[Vec<f64>], clock: &[f64]) -> Option<Walk> {
     let rest: Vec<Vec<f64>> = rest.iter().map(|row| growth(row)).collect();
     let replicas = rest.len() as f64;
@@ -109,7 +113,7 @@ impl Growth {
             freedom = freedom.min(each * alike / (2.0 * correlation));
             let squares: f64 =
                 self.rest.iter().flat_map(|row| &row[window.clone()]).map(|step| step * step).sum();
-            variance += squares / (each * span) * 2.0 * correlation * self.gaps[k];
+            variance += KEPT * squares / (each * span) * 2.0 * correlation * self.gaps[k];
             errors.push(variance.sqrt());
         }
         let correlation = correlation * self.gaps.iter().sum::<f64>() / count as f64;

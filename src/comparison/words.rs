@@ -94,6 +94,9 @@ impl Subject<'_> {
 pub(super) fn unknown_sentence(missing: Missing, subject: &Subject<'_>) -> String {
     let why = match missing {
         Missing::NotStated => "a single run states none",
+        Missing::Remembers => {
+            "its series remembers longer than the blocks from which a single run states one"
+        }
         Missing::NoColumn => "a single profile has no column of errors",
         Missing::BeginsApart => {
             "a single run of each begins at another value, and their difference does not settle about a mean"

@@ -25,9 +25,12 @@ const GAS: [&str; 14] = [
     "--set",
     "record.measures=['energy']",
 ];
-/// As many in a box in which they fill a fiftieth, but a ninth of them.
+/// Ten thousand of them, and the box in which they fill a quarter.
+const FEW: [&str; 4] =
+    ["--set", "particles.count=10000", "--set", "domain.size=[177.2453850905516, 177.2453850905516]"];
+/// A box in which they fill a fiftieth.
 const DILUTE: [&str; 4] =
-    ["--set", "domain.size=[626.6570686577501, 626.6570686577501]", "--set", "particles.count=10000"];
+    ["--set", "particles.count=10000", "--set", "domain.size=[626.6570686577501, 626.6570686577501]"];
 
 /// The series `name` over `abscissa` of the second contestant, or of the first where that is the other.
 fn difference(found: &Value, name: &str, abscissa: &str) -> Value {
@@ -79,8 +82,8 @@ fn restitutions_of_0_900_and_0_898_are_told_apart() {
     assert_eq!((&cooled["verdict"], &cooled["basis"]), (&Value::from("differs"), &Value::from("growth")));
     let last = |key: &str| cooled[key].as_array().unwrap().last().unwrap().as_f64().unwrap();
     let (value, error) = (last("values"), last("errors"));
-    // 0.0944 and 0.0962 per collision, 20 of them; √2 · 0.0944 √(40/90000) = 0.0028, with some memory.
-    assert!((0.0024..0.0045).contains(&error), "{error}");
+    // 0.0944 and 0.0962 per collision, 20 of them; √2 · 0.0944 √(40/90000) = 0.0028, doubled in square.
+    assert!((0.0028..0.0056).contains(&error), "{error}");
     assert!((value + 0.0357).abs() < 4.0 * error && -value > 6.0 * error, "{value} ± {error}");
     let sentence = cooled["sentence"].as_str().unwrap();
     assert!(
@@ -88,7 +91,7 @@ fn restitutions_of_0_900_and_0_898_are_told_apart() {
             && sentence.contains("standard errors, beyond")
     );
     let parts = cooled["parts_at"].as_f64().unwrap();
-    assert!(parts > 1.0 && parts < 15.0, "{parts}");
+    assert!(parts > 0.1 && parts < 15.0, "{parts}");
     assert!(sentence.contains("; apart from collisions per particle "), "{sentence}");
     assert!(said.contains("particles.restitution is 0.9 in a, 0.898 in b."), "{said}");
     assert!(said.contains("Correlation times of b minus a: "), "{said}");
@@ -98,35 +101,24 @@ fn restitutions_of_0_900_and_0_898_are_told_apart() {
 fn the_same_under_two_seeds_agrees() {
     let place = Place::with(&[]);
     for (out, seed) in [("a", "1"), ("b", "2")] {
-        place.run(
-            out,
-            &[
-                "--engine",
-                "event-driven",
-                "--seed",
-                seed,
-                DILUTE[2],
-                "particles.count=10000",
-                "--set",
-                "domain.size=[177.2453850905516, 177.2453850905516]",
-            ],
-        );
+        place.run(out, &[&["--engine", "event-driven", "--seed", seed], &FEW[..]].concat());
     }
-    assert_agree(&place.compared(&["a", "b"]).0);
+    let (found, said) = place.compared(&["a", "b"]);
+    assert_agree(&found);
+    assert!(said.contains("Each engine ran once. Errors of a series come from blocks"), "{said}");
+    // Densities change more slowly than the blocks of a run: none is said to differ.
+    assert!(!said.contains("standard errors, beyond"), "{said}");
 }
 
 #[test]
-fn hsmc_and_cba_agree_in_a_dilute_gas_from_replicas_and_from_one_run() {
+fn engines_agree_in_a_dilute_gas() {
     let place = Place::with(&[]);
-    for replicas in ["4", "1"] {
-        let arguments =
-            [&["cooling", "--engines", "hsmc,cba", "--replicas", replicas], &GAS[..], &DILUTE].concat();
-        let (found, said) = place.compared(&arguments);
-        assert_agree(&found);
-        assert_eq!(
-            said.contains("Each engine ran once. Errors of a series come from blocks"),
-            replicas == "1",
-            "{said}"
-        );
-    }
+    // From the same grains, with exact dynamics as the reference.
+    let engines = ["cooling", "--engines", "hsmc,cba,event-driven", "--replicas", "4"];
+    let (found, _) = place.compared(&[&engines[..], &GAS[..], &DILUTE].concat());
+    assert_agree(&found);
+    // One log of each, from other grains: with the same, these two would be the same to the bit.
+    place.run("a", &[&["--engine", "hsmc", "--seed", "1"], &DILUTE[..]].concat());
+    place.run("b", &[&["--engine", "cba", "--seed", "2"], &DILUTE[..]].concat());
+    assert_agree(&place.compared(&["a", "b"]).0);
 }

@@ -101,8 +101,8 @@ fn few_replicas_of_noise_differ_as_seldom_as_promised_and_no_more_seldom() {
 fn few_replicas_of_walks_have_the_errors_of_walks() {
     let [alarms, square] = of_equal_pairs(WALK, "temperature", 4, 100, 1000);
     assert!(alarms < 0.009, "{alarms}");
-    // Errors are a few per cent wide, as memory that is not there is found more often than missed.
-    assert!((square - 0.9).abs() < 0.15, "{square}");
+    // Variances are doubled on purpose, and a few per cent wide: memory that is not there is found more often than missed.
+    assert!((square - 0.45).abs() < 0.1, "{square}");
     // What is drawn back is farther from a walk: errors too wide, never too narrow.
     let [alarms, square] = of_equal_pairs(RETURNING, "temperature", 4, 100, 500);
     assert!(alarms < 0.01 && square < 0.3, "{alarms} {square}");
@@ -113,17 +113,18 @@ fn single_runs_have_the_errors_of_replicas() {
     let [alarms, square] = of_equal_pairs(NOISE, "stress", 1, 200, 1000);
     assert!(alarms < 0.009 && (square - 0.95).abs() < 0.18, "{alarms} {square}");
     let [alarms, square] = of_equal_pairs(WALK, "temperature", 1, 100, 2500);
-    assert_as_promised(alarms, 2500);
-    assert!((square - 0.97).abs() < 0.12, "{square}");
+    // Variances are doubled on purpose: one half, from both sides. A walk must not pass for noise: its errors would be
+    // far too small, and every such curve an alarm.
+    assert!(alarms < 0.003 && (square - 0.49).abs() < 0.07, "{alarms} {square}");
     let [alarms, square] = of_equal_pairs(RETURNING, "temperature", 1, 100, 500);
     assert!(alarms < 0.01 && square < 0.3, "{alarms} {square}");
 }
 
 #[test]
 fn a_lasting_difference_of_the_rate_is_found_from_single_runs_and_from_few_replicas() {
-    // ln T of each run walks by 0.003 per place: after 100 places by 0.03 √2, over four replicas by half of that. The
-    // second falls faster by 0.3 and 0.15: seven standard errors.
-    for (replicas, faster) in [(1, 0.003), (4, 0.0015)] {
+    // ln T of each run walks by 0.003 per place: after 100 places by 0.03 √2, over four replicas by half of that, and
+    // errors are √2 wider. The second falls faster by 0.45 and 0.225: 7.5 standard errors.
+    for (replicas, faster) in [(1, 0.0045), (4, 0.00225)] {
         let mut parted = 0.0;
         for seed in 0..50 {
             let comparison = trial(WALK, replicas, 101, faster, seed);
@@ -137,7 +138,7 @@ fn a_lasting_difference_of_the_rate_is_found_from_single_runs_and_from_few_repli
             let truth = (-faster * 100.0).exp_m1();
             assert!((difference.values[100] - truth).abs() < 5.0 * difference.errors[100]);
         }
-        // From 3.4 standard errors on, that is after a quarter of the curve, or somewhat later by chance.
-        assert!((15.0..50.0).contains(&parted), "{replicas}: {parted}");
+        // From 3.4 standard errors on, that is after a fifth of the curve, or somewhat later by chance.
+        assert!((10.0..45.0).contains(&parted), "{replicas}: {parted}");
     }
 }

@@ -369,3 +369,27 @@ fn figures_are_compared_as_shares_and_say_why_they_have_no_error() {
     assert!(replicas.is_relative && replicas.verdict == Verdict::Differs, "{}", replicas.sentence);
     assert!((replicas.values[0] - 1.003_333).abs() < 1e-3 && replicas.basis == Basis::Replicas);
 }
+
+#[test]
+fn a_figure_that_outlives_the_blocks_of_its_run_has_no_error() {
+    // Stresses that wander slowly: the ten blocks of the second half are much shorter than their memory.
+    let of = |label: &str, kept: f64, seed: u64, value: f64| {
+        let (mut random, mut stress) = (random(seed), 0.0);
+        let run = log(&even(400), |t| {
+            stress = kept * stress + random.gaussian();
+            [1.0, t, 5.0 + stress]
+        });
+        let mut entry = entry(label, vec![run]);
+        let summary = serde_json::json!({ "stress": value, "stress_standard_error": 0.01 });
+        entry.runs[0].summary = summary.as_object().cloned();
+        entry
+    };
+    let verdict = |kept: f64| {
+        let entries = vec![of("event-driven", kept, 1, 5.0), of("hsmc", kept, 2, 5.5)];
+        assemble(Head::default(), entries).figures[0].differences[1].clone().unwrap()
+    };
+    assert_eq!(verdict(0.0).verdict, Verdict::Differs);
+    let slow = verdict(0.98);
+    assert_eq!(slow.verdict, Verdict::Unknown, "{}", slow.sentence);
+    assert!(slow.sentence.contains("remembers longer than the blocks"), "{}", slow.sentence);
+}
