@@ -117,6 +117,23 @@ fn shared(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
     places.iter().copied().filter(is_shared).collect()
 }
 
+/// Those of `places` between which every curve has a recording of its own: what is interpolated twice between the same
+/// two recordings tells nothing new, and would look like memory.
+fn recorded(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
+    let mut kept: Vec<f64> = places.first().copied().into_iter().collect();
+    for place in places {
+        let last = kept[kept.len() - 1];
+        let has_one = |curve: &Sampled| {
+            let next = curve.x.partition_point(|x| *x <= last);
+            curve.x.get(next).is_some_and(|x| x <= place) || curve.x.last().is_some_and(|end| *end <= last)
+        };
+        if *place > last && curves.iter().flatten().all(|(_, curve)| has_one(curve)) {
+            kept.push(*place);
+        }
+    }
+    kept
+}
+
 /// Curves at the places of the reference, or of the first that has any; `None` unless two have some.
 pub(super) fn compare(
     entries: &[Entry],
@@ -134,6 +151,9 @@ pub(super) fn compare(
     let ends = [*places.first()?, *places.last()?];
     if form.is_series {
         say_where_it_ends(&in_words(&form.abscissa.name), ends, pattern.range()?, remarks);
+    }
+    if form.is_series {
+        places = recorded(&places, curves);
     }
     // One run alone is cut into blocks, which need every place that there is.
     if form.is_series && curves.iter().any(|runs| runs.len() > 1) {

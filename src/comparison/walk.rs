@@ -12,6 +12,8 @@ use super::scatter::{FREEDOM, window};
 const LEAST_STRETCHES: f64 = 20.0;
 /// Degrees of freedom that replicas must give together; fewer are no better than the replicas themselves.
 const LEAST_FREEDOM: f64 = 10.0;
+/// Stretches whose growth is looked at are this share of the clock long, or longer.
+const APART: f64 = 0.009_999;
 /// What a gas keeps of its beginning changes its rate for as long as it runs, and no run by itself shows that. Of 40 seeds
 /// of homogeneous cooling until τ = 20, ln E of event-driven dynamics has 1.9 times the variance that its growth in
 /// distinct stretches says, that of HSMC 1.0 times; variances are taken as twice as large.
@@ -36,17 +38,20 @@ pub(super) struct Walk {
 /// integrated autocorrelation time t, as a mean over a window of places that is as narrow as 30 degrees of freedom
 /// allow. The variance at a place is the sum of what was added up to there, doubled: see [`KEPT`].
 pub(super) fn of_replicas(rest: &[Vec<f64>], clock: &[f64]) -> Option<Walk> {
-    let rest: Vec<Vec<f64>> = rest.iter().map(|row| growth(row)).collect();
+    let knots = knots(clock);
+    let rest: Vec<Vec<f64>> = rest.iter().map(|row| growth(&at(row, &knots))).collect();
     let replicas = rest.len() as f64;
-    let walk = Growth { rest, gaps: growth(clock) }.walk(|_| replicas - 1.0)?;
-    let errors = walk.errors.iter().map(|error| error / replicas.sqrt()).collect();
+    let walk = Growth { rest, gaps: growth(&at(clock, &knots)) }.walk(|_| replicas - 1.0)?;
+    let errors = between(&walk.errors, &knots, clock).iter().map(|error| error / replicas.sqrt()).collect();
     (walk.freedom >= LEAST_FREEDOM).then_some(Walk { errors, ..walk })
 }
 
 /// The difference of two single runs that begin alike: its growth is taken about a rate that is linear in `clock`, so
 /// that a lasting difference counts as such and not as scatter. `None` with less than 20 independent stretches.
 pub(super) fn of_one(values: &[f64], clock: &[f64]) -> Option<Walk> {
-    let (steps, gaps) = (growth(values), growth(clock));
+    let (places, knots) = (clock, knots(clock));
+    let (values, clock) = (at(values, &knots), at(clock, &knots));
+    let (steps, gaps) = (growth(&values), growth(&clock));
     let middles: Vec<f64> = clock.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let rest = about_a_linear_rate(&steps, &gaps, &middles)?;
     let count = steps.len() as f64;
@@ -55,7 +60,45 @@ pub(super) fn of_one(values: &[f64], clock: &[f64]) -> Option<Walk> {
     if count / (2.0 * growth.correlation()?) < LEAST_STRETCHES {
         return None;
     }
-    growth.walk(kept)
+    let walk = growth.walk(kept)?;
+    Some(Walk { errors: between(&walk.errors, &knots, places), ..walk })
+}
+
+/// Places at least a hundredth of the whole clock apart, with the first and the last.
+fn knots(clock: &[f64]) -> Vec<usize> {
+    let last = clock.len().saturating_sub(1);
+    let apart = (clock.last().copied().unwrap_or(0.0) - clock.first().copied().unwrap_or(0.0)) * APART;
+    let mut knots: Vec<usize> = Vec::new();
+    for (k, time) in clock.iter().enumerate() {
+        if knots.last().is_none_or(|before| time - clock[*before] >= apart) {
+            knots.push(k);
+        }
+    }
+    if knots.last().is_some_and(|knot| *knot != last) {
+        // The rest of the clock joins the stretch before it.
+        if knots.len() > 1 {
+            knots.pop();
+        }
+        knots.push(last);
+    }
+    knots
+}
+
+fn at(values: &[f64], knots: &[usize]) -> Vec<f64> {
+    knots.iter().map(|k| values[*k]).collect()
+}
+
+/// Errors at all places of `clock` from those at `knots`: between these the variance grows evenly.
+fn between(errors: &[f64], knots: &[usize], clock: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; clock.len()];
+    for (pair, ends) in knots.windows(2).zip(errors.windows(2)) {
+        for k in pair[0]..=pair[1] {
+            let share = (clock[k] - clock[pair[0]]) / (clock[pair[1]] - clock[pair[0]]);
+            let [a, b] = [ends[0] * ends[0], ends[1] * ends[1]];
+            all[k] = (a + share * (b - a)).sqrt();
+        }
+    }
+    all
 }
 
 fn growth(values: &[f64]) -> Vec<f64> {
@@ -118,5 +161,30 @@ impl Growth {
         }
         let correlation = correlation * self.gaps.iter().sum::<f64>() / count as f64;
         Some(Walk { errors, freedom, correlation })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn knots_are_a_hundredth_apart_and_hold_both_ends() {
+        let even: Vec<f64> = (0..=50).map(f64::from).collect();
+        assert_eq!(knots(&even), (0..=50).collect::<Vec<usize>>());
+        let powers: Vec<f64> = (0..60).map(|k| 1.2_f64.powi(k) - 1.0).collect();
+        let found = knots(&powers);
+        assert_eq!((found[0], found[found.len() - 1]), (0, 59));
+        let shortest =
+            found.windows(2).map(|pair| powers[pair[1]] - powers[pair[0]]).fold(f64::INFINITY, f64::min);
+        assert!(shortest >= APART * powers[59] && found.len() > 20, "{found:?}");
+        // Where the variance grows evenly at knots it does so everywhere.
+        let errors: Vec<f64> = found.iter().map(|k| powers[*k].sqrt()).collect();
+        let all = between(&errors, &found, &powers);
+        assert!(
+            all.iter()
+                .zip(&powers)
+                .all(|(error, time)| (error - time.sqrt()).abs() < 1e-9 * time.sqrt() + 1e-12)
+        );
     }
 }
