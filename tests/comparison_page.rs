@@ -3,7 +3,8 @@
 //! `GRAINFLOW_REPORT_SAMPLES=DIR cargo test --test comparison_page` leaves the page in DIR, to be looked at.
 
 use grainflow::comparison::model::{
-    Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve, Verdict,
+    Basis, Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve,
+    Verdict,
 };
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::contents::{Frame, Walls};
@@ -44,6 +45,11 @@ fn compared(
                 errors: places.iter().map(|_| 0.014).collect(),
                 most: Some(Peak { place: places[1], standard_errors: if is_different { 9.0 } else { 1.2 } }),
                 threshold: 3.6,
+                last_threshold: Some(3.2),
+                overall: None,
+                basis: Basis::Replicas,
+                freedom: 100.0,
+                correlation: None,
                 parts_at: is_different.then(|| places[places.len() / 3]),
                 verdict: if is_different { Verdict::Differs } else { Verdict::Agrees },
                 sentence: format!("{} of {name} in words", ENGINES[engine]),

@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value};
 
-use super::model::{Comparison, Contestant, Cost};
+use super::common::Remarks;
+use super::model::{Basis, Compared, Comparison, Contestant, Correlation, Cost};
+use super::words::{in_words, rounded};
 use super::{figures, profiles, series};
 use crate::record::contents::RunLog;
 use crate::statistics::mean;
@@ -65,9 +67,12 @@ pub fn assemble(head: Head, entries: Vec<Entry>) -> Comparison {
     comparison.remarks = remarks(&entries);
     comparison.remarks.extend(head.remarks);
     if !entries.is_empty() {
-        comparison.series = series::compared(&entries, comparison.reference);
-        comparison.profiles = profiles::compared(&entries, comparison.reference);
+        let mut left_out = Remarks::new();
+        comparison.series = series::compared(&entries, comparison.reference, &mut left_out);
+        comparison.profiles = profiles::compared(&entries, comparison.reference, &mut left_out);
         comparison.figures = figures::compared(&entries, comparison.reference, comparison.dimension);
+        comparison.remarks.extend(left_out);
+        comparison.remarks.extend(memories(&comparison, &entries));
     }
     comparison.contestants = entries.into_iter().map(contestant).collect();
     comparison
@@ -95,18 +100,37 @@ fn remarks(entries: &[Entry]) -> Vec<String> {
     let most = entries.iter().map(|entry| entry.runs.len()).max().unwrap_or(0);
     let mut remarks = vec![match most {
         0 => "No run came to its end.".to_owned(),
-        1 => "Each engine ran once. Errors of a series come from blocks of the difference in time, with its integrated \
-              autocorrelation time; where a difference bends, or forgets too slowly for that, no error is known. Errors \
-              of figures are those of the runs' own blocks; profiles have none."
+        1 => "Each engine ran once. Errors of a series come from blocks of the difference in time, longer than its \
+              correlation time; where it does not settle but both begin alike, as in a gas that cools, from the scatter \
+              of what it grows by in distinct stretches. Errors of profiles and figures are those that the runs state."
             .to_owned(),
         _ => "Standard errors come from the scatter of replicas; runs that begin at the same state are subtracted from \
-              each other before the scatter is taken."
+              each other before the scatter is taken, and neighbouring places help each other to know it."
             .to_owned(),
     }];
     for entry in entries.iter().filter(|entry| entry.runs.len() < most) {
         remarks.push(format!("{} has {} of {most} runs.", entry.label, entry.runs.len()));
     }
     remarks
+}
+
+/// How long the differences of single runs remember, a sentence for each contestant: their errors rest on that.
+fn memories(comparison: &Comparison, entries: &[Entry]) -> Vec<String> {
+    let of_contestant = |(place, entry): (usize, &Entry)| {
+        let of_series = |compared: &Compared| {
+            let difference = compared.differences.get(place)?.as_ref()?;
+            let is_of_one =
+                matches!(difference.basis, Basis::Blocks | Basis::Growth) && entry.runs.len() == 1;
+            let Correlation { time, clock } = difference.correlation.as_ref().filter(|_| is_of_one)?;
+            let over = if compared.abscissa.name == "time" { "" } else { " over collisions" };
+            Some(format!("{}{over} {} in {}", in_words(&compared.name), rounded(*time), in_words(clock)))
+        };
+        let known: Vec<String> = comparison.series.iter().filter_map(of_series).collect();
+        let reference = &entries[comparison.reference].label;
+        let head = format!("Correlation times of {} minus {reference}", entry.label);
+        (!known.is_empty()).then(|| format!("{head}: {}.", known.join(", ")))
+    };
+    entries.iter().enumerate().filter_map(of_contestant).collect()
 }
 
 fn contestant(entry: Entry) -> Contestant {

@@ -38,6 +38,11 @@ impl Table<'_> {
                 let head = [kind.to_owned(), name.clone(), number(compared.time), number(Some(*place))];
                 self.line(head, &self.label(contestant), values, against, difference);
             }
+            if let Some((difference, all)) = difference.and_then(|of| Some((of, of.overall?))) {
+                let head = [format!("{kind} as a whole"), name.clone(), number(compared.time), String::new()];
+                let against = [Some(all.value), Some(all.error)];
+                self.line(head, &self.label(contestant), [None; 2], against, Some(difference));
+            }
         }
         for theory in &compared.theory {
             let label = format!("theory: {}", theory.name);
@@ -123,12 +128,14 @@ mod tests {
             "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict
 series,temperature,,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs
 series,temperature,,0.5,\"hsmc, again\",0.1,,,,differs
+series as a whole,temperature,,,\"hsmc, again\",,,0.25,0.0625,differs
 series,temperature,,0.0,event-driven,1.0,0.0,,,
 series,temperature,,0.5,event-driven,,,,,
 series,temperature,,0.0,theory: Haff’s law,1.0,,,,
 series,temperature,,0.5,theory: Haff’s law,0.125,,,,
 profile,density-profile: volume_fraction,2.5,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs
 profile,density-profile: volume_fraction,2.5,0.5,\"hsmc, again\",0.1,,,,differs
+profile as a whole,density-profile: volume_fraction,2.5,,\"hsmc, again\",,,0.25,0.0625,differs
 profile,density-profile: volume_fraction,2.5,0.0,event-driven,1.0,0.0,,,
 profile,density-profile: volume_fraction,2.5,0.5,event-driven,,,,,
 figure,pressure,,,\"hsmc, again\",1.25,0.5,0.25,0.75,differs

@@ -3,17 +3,18 @@
 use serde_json::{Map, Value};
 
 use super::assemble::{Entry, Replica};
-use super::difference::{Drawn, Rule, difference, of_estimates};
+use super::difference::{apart, difference};
+use super::errors::{Along, Drawn, Missing, Terms, as_stated};
+use super::judge::judged;
+use super::memory::longest_memory;
 use super::model::{ComparedFigure, Difference};
 use super::words::{Subject, in_words};
 use crate::observe::measure::Dimension;
-use crate::statistics::{BLOCKS, Estimate, average};
+use crate::statistics::{BLOCKS, Estimate, average, mean};
 
 /// Figures that every run has and that say something of its physics.
 const COMMON: [&str; 5] =
     ["temperature", "kinetic_energy_final", "collisions", "collisions_per_particle", "simulated_time"];
-/// Degrees of freedom of an error from blocks of each of two runs, at least.
-const FREEDOM: f64 = BLOCKS as f64 - 1.0;
 
 /// All figures that two contestants have.
 pub(super) fn compared(entries: &[Entry], reference: usize, dimension: usize) -> Vec<ComparedFigure> {
@@ -70,6 +71,7 @@ fn estimate(entry: &Entry, name: &str) -> Option<Estimate> {
     Some(estimate)
 }
 
+/// As a share of the reference where all values of both are above zero, else in its unit.
 fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
     let subject = Subject {
         label: &own.label,
@@ -79,21 +81,39 @@ fn against(own: &Entry, other: &Entry, name: &str) -> Option<Difference> {
         time: None,
         is_cooling: false,
     };
+    let of = |entry: &Entry| -> Vec<f64> { entry.runs.iter().filter_map(|run| number(run, name)).collect() };
+    let (values, others) = (of(own), of(other));
+    let level = mean(&others)?;
+    let is_positive = values.iter().chain(&others).all(|value| *value > 0.0);
+    let (terms, scale) = if is_positive { (Terms::Shares, level) } else { (Terms::Own, 1.0) };
     if let ([a], [b]) = (&own.runs[..], &other.runs[..]) {
-        let values = [number(a, name)?, number(b, name)?];
-        return Some(of_estimates(
-            values,
-            [a, b].map(|run| number(run, &error_key(name))),
-            FREEDOM,
-            &subject,
-        ));
+        let value = apart(number(a, name)? / scale, number(b, name)? / scale, terms);
+        let stated = |run: &Replica| [number(run, &error_key(name)).map_or(f64::NAN, |error| error / scale)];
+        let (errors, missing) = match [a, b].iter().any(|run| outlives_its_blocks(run, name)) {
+            true => ([[f64::NAN]; 2], Missing::Remembers),
+            false => ([a, b].map(stated), Missing::NotStated),
+        };
+        let raw = as_stated(vec![value], [&errors[0], &errors[1]], missing);
+        return Some(judged(raw, &Along { places: &[0.0], ..Along::default() }, terms, &subject));
     }
     let drawn = |entry: &Entry| -> Vec<Drawn> {
         let runs = entry.runs.iter().filter_map(|run| Some((run.number, number(run, name)?)));
-        runs.map(|(replica, value)| Drawn { replica, values: vec![value] }).collect()
+        runs.map(|(replica, value)| Drawn { replica, values: vec![value / scale], errors: Vec::new() })
+            .collect()
     };
-    let rule = Rule { is_relative: false, is_in_time: false };
-    difference(&drawn(own), &drawn(other), &[0.0], rule, &subject)
+    let along = Along { places: &[0.0], level: vec![1.0], ..Along::default() };
+    difference(&drawn(own), &drawn(other), &along, terms, &subject)
+}
+
+/// Whether the series of a figure remembers longer than a block of the second half of the run lasts: a run cuts that
+/// into [`BLOCKS`], and its error of the figure is then too small. Of a figure without a series nobody knows.
+fn outlives_its_blocks(run: &Replica, name: &str) -> bool {
+    let Some(column) = run.log.columns.iter().position(|column| column.name == name) else { return false };
+    let values: Vec<f64> = run.log.series.iter().filter_map(|row| row.get(column).copied()).collect();
+    let late = values[values.len() / 2..].iter().copied().filter(|value| value.is_finite());
+    let late: Vec<f64> = late.collect();
+    let block = (late.len() as f64 / BLOCKS as f64).max(2.0);
+    longest_memory(&late).is_some_and(|memory| 2.0 * memory > block)
 }
 
 /// The unit of a figure, from the series where that has it.

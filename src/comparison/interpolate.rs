@@ -1,5 +1,7 @@
 //! The value of a curve between its points; never beyond its ends.
 
+use crate::statistics::{blocks, mean};
+
 /// How a quantity goes from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Path {
@@ -19,6 +21,8 @@ pub(super) struct Sampled {
     pub(super) x: Vec<f64>,
     /// NaN where it is not defined.
     pub(super) y: Vec<f64>,
+    /// Standard errors of y that the run states; empty where it states none.
+    pub(super) errors: Vec<f64>,
 }
 
 impl Sampled {
@@ -42,6 +46,34 @@ impl Sampled {
     /// Whether all of its values are above zero.
     pub(super) fn is_positive(&self) -> bool {
         self.has_values() && self.y.iter().all(|y| y.is_nan() || *y > 0.0)
+    }
+
+    /// The first and the last x with a value.
+    pub(super) fn range(&self) -> Option<[f64; 2]> {
+        let known = || self.x.iter().zip(&self.y).filter(|(_, y)| y.is_finite()).map(|(x, _)| *x);
+        Some([known().next()?, known().next_back()?])
+    }
+
+    /// The largest over the smallest of the means of ten parts of it, which single values cannot sway.
+    pub(super) fn span(&self) -> f64 {
+        let known: Vec<f64> = self.y.iter().copied().filter(|y| y.is_finite()).collect();
+        let means = || blocks(known.len()).filter_map(|block| mean(&known[block]));
+        means().fold(0.0, f64::max) / means().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether its last value is below `share` of its first.
+    pub(super) fn falls_below(&self, share: f64) -> bool {
+        let known = || self.y.iter().filter(|y| y.is_finite());
+        known().next().zip(known().next_back()).is_some_and(|(first, last)| *last < share * first)
+    }
+
+    /// Its errors at `places`, straight between its points; empty where it has none.
+    pub(super) fn errors_at(&self, places: &[f64]) -> Vec<f64> {
+        if self.errors.is_empty() {
+            return Vec::new();
+        }
+        let errors = Sampled { x: self.x.clone(), y: self.errors.clone(), errors: Vec::new() };
+        errors.at(places, Path::Straight)
     }
 
     /// Whether times lie like powers of a number.

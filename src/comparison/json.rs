@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::model::{Compared, ComparedFigure, Comparison, Contestant, Difference, TheoryCurve, Verdict};
+use super::model::{
+    Basis, Compared, ComparedFigure, Comparison, Contestant, Difference, TheoryCurve, Verdict,
+};
 use crate::observe::measure::{Column, Dimension};
 
 /// The file's text: the names of [`Comparison`], all but the frames; null where a number is not known.
@@ -35,6 +37,20 @@ impl Verdict {
             Verdict::Agrees => "agrees",
             Verdict::Differs => "differs",
             Verdict::Unknown => "unknown",
+        }
+    }
+}
+
+impl Basis {
+    /// Where errors are from, in a word.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Basis::Replicas => "replicas",
+            Basis::Neighbours => "neighbours",
+            Basis::Growth => "growth",
+            Basis::Blocks => "blocks",
+            Basis::Stated => "stated",
+            Basis::Nothing => "nothing",
         }
     }
 }
@@ -110,6 +126,16 @@ fn difference(difference: &Difference) -> Value {
         "errors": difference.errors,
         "most": difference.most.map(|most| json!({ "place": most.place, "standard_errors": most.standard_errors })),
         "threshold": difference.threshold,
+        "last_threshold": difference.last_threshold,
+        "overall": difference.overall.map(|all| json!({
+            "value": all.value,
+            "error": all.error,
+            "standard_errors": all.standard_errors,
+            "threshold": all.threshold,
+        })),
+        "basis": difference.basis.name(),
+        "freedom": difference.freedom,
+        "correlation": difference.correlation.as_ref().map(|of| json!({ "time": of.time, "clock": of.clock })),
         "parts_at": difference.parts_at,
         "verdict": difference.verdict.name(),
         "sentence": difference.sentence,
@@ -148,6 +174,13 @@ mod tests {
         assert_eq!(series["time"], Value::Null);
         assert_eq!(series["curves"][1], json!({ "values": [1.0, null], "errors": [0.0, null] }));
         assert_eq!(series["differences"][0]["most"], json!({ "place": 0.5, "standard_errors": 4.0 }));
+        let whole = json!({ "value": 0.25, "error": 0.0625, "standard_errors": 4.0, "threshold": 3.25 });
+        assert_eq!(series["differences"][0]["overall"], whole);
+        let correlation = json!({ "time": 0.75, "clock": "time" });
+        assert_eq!(series["differences"][0]["correlation"], correlation);
+        let [basis, freedom, last] =
+            ["basis", "freedom", "last_threshold"].map(|key| &series["differences"][0][key]);
+        assert_eq!((basis, freedom, last), (&json!("growth"), &json!(12.0), &json!(3.125)));
         assert_eq!(
             (&series["differences"][0]["verdict"], &series["differences"][1]),
             (&json!("differs"), &Value::Null)

@@ -2,8 +2,9 @@
 
 use crate::statistics::{blocks, mean, straight_line};
 
-/// Independent stretches that a series must hold before its scatter says how well its blocks are known.
-const LEAST_STRETCHES: f64 = 20.0;
+/// Independent stretches that a series must hold before its scatter says how well its blocks are known. A walk about its
+/// straight line seems to hold about nine, and more than 40 in less than one of five thousand.
+const LEAST_STRETCHES: f64 = 40.0;
 /// The sum of autocorrelations ends where it is this many correlation times long (Sokal 1997, 3).
 const WINDOW: f64 = 5.0;
 
@@ -14,6 +15,8 @@ pub(super) struct Blocked {
     pub(super) values: Vec<f64>,
     /// For each value the standard error of that mean.
     pub(super) errors: Vec<f64>,
+    /// The mean of the whole, and its standard error.
+    pub(super) whole: [f64; 2],
     /// Blocks.
     pub(super) blocks: usize,
     /// Degrees of freedom of the errors.
@@ -24,24 +27,26 @@ pub(super) struct Blocked {
 
 /// `series`, evenly spaced, as means of blocks. Its scatter is that about its straight line, σ², with the integrated
 /// autocorrelation time t of what is left; the mean of L places then has the error σ √(2t/L), with n/(2t) − 2 degrees
-/// of freedom. `None` where the series holds less than 20 stretches of 2t: a curve that bends, or that walks without
+/// of freedom. `None` where the series holds less than 40 stretches of 2t, t the largest
+/// of the partial sums: a curve that bends, or that walks without
 /// ever forgetting, looks like that, and one run does not tell which.
 pub(super) fn blocked(series: &[f64]) -> Option<Blocked> {
     let places: Vec<f64> = (0..series.len()).map(|k| k as f64).collect();
     let line = straight_line(&places, series)?;
     let rest: Vec<f64> =
         places.iter().zip(series).map(|(x, y)| y - line.intercept - line.slope * x).collect();
-    let correlation = correlation_time(&rest)?;
-    let stretches = series.len() as f64 / (2.0 * correlation);
-    if stretches < LEAST_STRETCHES {
+    let Memory { time: correlation, longest } = memory(&[rest.clone()])?;
+    if series.len() as f64 / (2.0 * longest) < LEAST_STRETCHES {
         return None;
     }
+    let stretches = series.len() as f64 / (2.0 * correlation);
     let squares: f64 = rest.iter().map(|r| r * r).sum();
     // The line and the memory take away from the scatter what two stretches have.
     let variance = squares / series.len() as f64 * stretches / (stretches - 2.0);
     let mut blocked = Blocked {
         values: Vec::with_capacity(series.len()),
         errors: Vec::with_capacity(series.len()),
+        whole: [mean(series)?, (variance / stretches).sqrt()],
         blocks: 0,
         freedom: stretches - 2.0,
         correlation,
@@ -57,22 +62,43 @@ pub(super) fn blocked(series: &[f64]) -> Option<Blocked> {
     Some(blocked)
 }
 
-/// 1/2 + Σ ρ(k), at least 1/2; `None` where nothing varies.
-fn correlation_time(rest: &[f64]) -> Option<f64> {
+/// 1/2 + Σ ρ(k) of all `rows` together, each of which has the mean 0 and the same length; at least 1/2; `None` where
+/// nothing varies.
+pub(super) fn correlation_time(rows: &[Vec<f64>]) -> Option<f64> {
+    Some(memory(rows)?.time)
+}
+
+/// The largest partial sum of 1/2 + Σ ρ(k) of `series` about its mean, in places.
+pub(super) fn longest_memory(series: &[f64]) -> Option<f64> {
+    let centre = mean(series)?;
+    Some(memory(&[series.iter().map(|value| value - centre).collect()])?.longest)
+}
+
+/// What a sum of autocorrelations comes to.
+struct Memory {
+    /// At its end.
+    time: f64,
+    /// Before its end: what was added about a fitted line is taken away again by longer lags, be there memory or not.
+    longest: f64,
+}
+
+fn memory(rows: &[Vec<f64>]) -> Option<Memory> {
     let product =
-        |lag: usize| rest.iter().zip(&rest[lag..]).map(|(a, b)| a * b).sum::<f64>() / rest.len() as f64;
+        |lag: usize| rows.iter().flat_map(|row| row.iter().zip(&row[lag..])).map(|(a, b)| a * b).sum::<f64>();
+    let length = rows.iter().map(Vec::len).min().filter(|length| *length > 0)?;
     let variance = product(0);
     if !(variance > 0.0 && variance.is_finite()) {
         return None;
     }
-    let mut time = 0.5;
-    for lag in 1..rest.len() {
+    let (mut time, mut longest) = (0.5_f64, 0.5_f64);
+    for lag in 1..length {
         time += product(lag) / variance;
+        longest = longest.max(time);
         if lag as f64 >= WINDOW * time {
             break;
         }
     }
-    Some(time.max(0.5))
+    Some(Memory { time: time.max(0.5), longest })
 }
 
 #[cfg(test)]
@@ -121,6 +147,7 @@ mod tests {
             })
             .collect();
         assert_eq!(blocked(&walk), None);
+        assert!(correlation_time(&[walk]).is_some_and(|time| time > 50.0));
         let bend: Vec<f64> =
             noise(4, 200, 0.0).iter().enumerate().map(|(k, y)| y + (k as f64 / 30.0).powi(2)).collect();
         assert_eq!(blocked(&bend), None);

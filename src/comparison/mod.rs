@@ -3,15 +3,19 @@
 //! How errors and verdicts are made stands in `docs/comparison.md`.
 
 mod assemble;
+mod common;
 pub mod csv;
 mod difference;
+mod errors;
 mod figures;
 mod interpolate;
 pub mod json;
+mod judge;
 mod memory;
 pub mod model;
 mod profiles;
 mod read;
+mod scatter;
 mod series;
 mod stability;
 mod student;
@@ -20,6 +24,7 @@ mod testing;
 pub mod theory;
 #[cfg(test)]
 mod theory_tests;
+mod walk;
 mod words;
 
 pub use assemble::{Entry, Head, Replica, assemble};

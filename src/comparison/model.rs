@@ -125,16 +125,67 @@ pub struct Difference {
     pub values: Vec<f64>,
     /// Standard errors of these, with replicas paired where they begin at the same state.
     pub errors: Vec<f64>,
+    /// Where the errors are from.
+    pub basis: Basis,
+    /// Degrees of freedom of the errors.
+    pub freedom: f64,
+    /// How long the difference remembers, where its errors rest on that.
+    pub correlation: Option<Correlation>,
     /// The largest of |value|/error, and where it is; `None` where no error is known.
     pub most: Option<Peak>,
     /// Standard errors beyond which values differ: 3 for a single one, more for many places.
     pub threshold: f64,
-    /// The first place from which on they differ.
+    /// Standard errors beyond which the last place of a curve in time differs, and those before it that are apart as
+    /// well; `None` for what is no such curve.
+    pub last_threshold: Option<f64>,
+    /// The difference of the curves as wholes; `None` for single values, and where nothing is known of it.
+    pub overall: Option<Overall>,
+    /// The first place from which on they differ, to the last.
     pub parts_at: Option<f64>,
     /// What came out.
     pub verdict: Verdict,
     /// The same in a sentence, with numbers.
     pub sentence: String,
+}
+
+/// Where errors of a difference are from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Basis {
+    /// The scatter of replicas, at each place by itself.
+    Replicas,
+    /// The scatter of replicas at a place and at its neighbours.
+    Neighbours,
+    /// The scatter of what is added from place to place: a curve that accumulates chance.
+    Growth,
+    /// Blocks of one run.
+    Blocks,
+    /// What the runs themselves state.
+    Stated,
+    /// There are none.
+    #[default]
+    Nothing,
+}
+
+/// How long something remembers: its integrated autocorrelation time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correlation {
+    /// The time; values this far apart, twice, count as independent.
+    pub time: f64,
+    /// What it is measured in: the abscissa, or `collisions_per_particle`.
+    pub clock: String,
+}
+
+/// The mean difference of two curves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overall {
+    /// In the terms of the difference's values.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+    /// |value| / error.
+    pub standard_errors: f64,
+    /// Standard errors beyond which it differs from zero.
+    pub threshold: f64,
 }
 
 /// A difference in standard errors.

@@ -83,6 +83,7 @@ pub fn read(paths: &[PathBuf]) -> Result<(Head, Vec<Entry>), LogsError> {
         head.remarks = entries[1..].iter().flat_map(|other| unlike(first, other)).collect();
     }
     for (path, entry) in paths.iter().zip(&entries) {
+        head.remarks.extend(unread(path, &entry.runs[0].log));
         let cut_off = entry.runs[0].log.cut_off.as_ref();
         head.remarks.extend(cut_off.map(|missing| format!("{}: {missing}", path.display())));
     }
@@ -93,12 +94,23 @@ fn entry(path: &Path) -> Result<Entry, LogsError> {
     let file = log_of(path)?;
     let log = read_log(&file)?;
     let engine = log.metadata.get("engine").cloned().unwrap_or_default();
-    // A log of another version may hold a scenario that this one does not take; its pictures then lack a scale.
+    // A log of another version may hold a scenario that this one does not take: see `unread`.
     let diameter = parse("log", &log.scenario, &Overrides::default()).map_or(1.0, |one| one.diameter());
     let summary = summary_beside(&file)?;
     let folder = path.display().to_string();
     let run = Replica { number: 1, folder: folder.clone(), log, summary };
     Ok(Entry { label: folder, engine, runs: vec![run], failures: Vec::new(), was_alone: true, diameter })
+}
+
+/// A remark where the scenario of a log cannot be read: its grains are then drawn with a diameter that nobody gave.
+fn unread(path: &Path, log: &RunLog) -> Option<String> {
+    let error = parse("log", &log.scenario, &Overrides::default()).err()?;
+    let mistakes = error.to_string().replace('\n', " ");
+    Some(format!(
+        "{}: its scenario cannot be read ({}), so that its grains are drawn with a diameter of 1.",
+        path.display(),
+        mistakes.trim()
+    ))
 }
 
 /// The log that `path` means: itself, or the one of a run folder.

@@ -1,7 +1,9 @@
 //! Series of all contestants at common places.
 
 use super::assemble::Entry;
-use super::difference::{Drawn, Rule, curve, difference};
+use super::common::{Remarks, level, say_where_it_ends, without_short};
+use super::difference::difference;
+use super::errors::{Along, Drawn, Terms, curve};
 use super::interpolate::{Path, Sampled};
 use super::model::Compared;
 use super::words::{Subject, in_words};
@@ -13,11 +15,13 @@ const COLLISIONS: &str = "collisions_per_particle";
 const ENERGY: Dimension = Dimension { mass: 1, length: 2, time: -2 };
 /// Places of a series: more would widen what counts as a difference at each and tell little more.
 const PLACES: usize = 200;
+/// What is above zero and changes by a larger factor is compared by its logarithms, as energies are.
+const SPAN: f64 = 3.0;
 /// An energy of the reference that falls below this share of its first value cools.
 const COOLED: f64 = 0.9;
 
 /// All columns that two contestants have, against time; energies also against collisions per particle.
-pub(super) fn compared(entries: &[Entry], reference: usize) -> Vec<Compared> {
+pub(super) fn compared(entries: &[Entry], reference: usize, remarks: &mut Remarks) -> Vec<Compared> {
     let mut columns: Vec<&Column> = Vec::new();
     for column in entries.iter().flat_map(|entry| &entry.runs).flat_map(|run| &run.log.columns) {
         if column.name != TIME && !columns.iter().any(|known| known.name == column.name) {
@@ -26,9 +30,9 @@ pub(super) fn compared(entries: &[Entry], reference: usize) -> Vec<Compared> {
     }
     let mut all = Vec::new();
     for column in columns {
-        all.extend(against(entries, reference, column, TIME));
+        all.extend(against(entries, reference, column, TIME, remarks));
         if column.unit == ENERGY {
-            all.extend(against(entries, reference, column, COLLISIONS));
+            all.extend(against(entries, reference, column, COLLISIONS, remarks));
         }
     }
     all
@@ -41,14 +45,22 @@ fn sampled(log: &RunLog, x: &str, y: &str) -> Sampled {
     Sampled::new(log.series.iter().filter_map(|row| Some((*row.get(x)?, *row.get(y)?))))
 }
 
-fn against(entries: &[Entry], reference: usize, column: &Column, abscissa: &str) -> Option<Compared> {
+fn against(
+    entries: &[Entry],
+    reference: usize,
+    column: &Column,
+    abscissa: &str,
+    remarks: &mut Remarks,
+) -> Option<Compared> {
     let curves = of_entries(entries, |log| sampled(log, abscissa, &column.name));
+    let curves = without_short(entries, curves, Sampled::range, &in_words(abscissa), remarks);
     let unit = Dimension { time: i8::from(abscissa == TIME), ..Dimension::default() };
     let abscissa = Column { name: abscissa.to_owned(), unit };
     // A series is interpolated as what it is, and judged so.
     let is_energy = column.unit == ENERGY;
-    let form = Form { name: &column.name, abscissa, ordinate: column, time: None, is_energy };
-    compare(entries, reference, &curves, form)
+    let form =
+        Form { name: &column.name, abscissa, ordinate: column, time: None, is_series: true, is_energy };
+    compare(entries, reference, &curves, form, remarks)
 }
 
 /// `[contestant][run]`: initial state and curve, without those that have no value.
@@ -69,6 +81,8 @@ pub(super) struct Form<'a> {
     pub(super) abscissa: Column,
     pub(super) ordinate: &'a Column,
     pub(super) time: Option<f64>,
+    /// Whether the places follow each other in time.
+    pub(super) is_series: bool,
     /// Compared as shares and interpolated by logarithms, where all values are above zero.
     pub(super) is_energy: bool,
 }
@@ -84,8 +98,40 @@ fn thinned(places: &[f64]) -> Vec<f64> {
 
 /// The curves of one contestant at common places.
 fn drawn_at(runs: &[(u32, Sampled)], places: &[f64], path: Path) -> Vec<Drawn> {
-    let at = |(replica, curve): &(u32, Sampled)| Drawn { replica: *replica, values: curve.at(places, path) };
+    let at = |(replica, curve): &(u32, Sampled)| Drawn {
+        replica: *replica,
+        values: curve.at(places, path),
+        errors: curve.errors_at(places),
+    };
     runs.iter().map(at).collect()
+}
+
+/// Those of the leading places, without those at the ends where less than two contestants have a whole curve.
+fn shared(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
+    let covers = |runs: &Vec<(u32, Sampled)>, place: f64| {
+        let holds =
+            |curve: &Sampled| curve.range().is_some_and(|[first, last]| first <= place && place <= last);
+        !runs.is_empty() && runs.iter().all(|(_, curve)| holds(curve))
+    };
+    let is_shared = |place: &f64| curves.iter().filter(|runs| covers(runs, *place)).count() > 1;
+    places.iter().copied().filter(is_shared).collect()
+}
+
+/// Those of `places` between which every curve has a recording of its own: what is interpolated twice between the same
+/// two recordings tells nothing new, and would look like memory.
+fn recorded(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
+    let mut kept: Vec<f64> = places.first().copied().into_iter().collect();
+    for place in places {
+        let last = kept[kept.len() - 1];
+        let has_one = |curve: &Sampled| {
+            let next = curve.x.partition_point(|x| *x <= last);
+            curve.x.get(next).is_some_and(|x| x <= place) || curve.x.last().is_some_and(|end| *end <= last)
+        };
+        if *place > last && curves.iter().flatten().all(|(_, curve)| has_one(curve)) {
+            kept.push(*place);
+        }
+    }
+    kept
 }
 
 /// Curves at the places of the reference, or of the first that has any; `None` unless two have some.
@@ -94,40 +140,53 @@ pub(super) fn compare(
     reference: usize,
     curves: &[Vec<(u32, Sampled)>],
     form: Form<'_>,
+    remarks: &mut Remarks,
 ) -> Option<Compared> {
     if curves.iter().filter(|runs| !runs.is_empty()).count() < 2 {
         return None;
     }
-    let leading = [&curves[reference]].into_iter().chain(curves).find_map(|runs| runs.first())?;
-    let is_in_time = form.time.is_none() && [TIME, COLLISIONS].contains(&form.abscissa.name.as_str());
+    let leading = [reference].into_iter().chain(0..curves.len()).find(|place| !curves[*place].is_empty())?;
+    let (number, pattern) = curves[leading].first()?;
+    let mut places = shared(&pattern.x, curves);
+    let ends = [*places.first()?, *places.last()?];
+    if form.is_series {
+        say_where_it_ends(&in_words(&form.abscissa.name), ends, pattern.range()?, remarks);
+    }
+    if form.is_series {
+        places = recorded(&places, curves);
+    }
     // One run alone is cut into blocks, which need every place that there is.
-    let has_replicas = curves.iter().any(|runs| runs.len() > 1);
-    let places = &if is_in_time && has_replicas { thinned(&leading.1.x) } else { leading.1.x.clone() };
+    if form.is_series && curves.iter().any(|runs| runs.len() > 1) {
+        places = thinned(&places);
+    }
     let all = || curves.iter().flatten().map(|(_, curve)| curve);
-    let is_relative = form.is_energy && all().all(Sampled::is_positive);
+    let is_relative = form.is_series
+        && all().all(Sampled::is_positive)
+        && (form.is_energy || all().any(|curve| curve.span() > SPAN));
     let path = if is_relative { Path::Logarithmic } else { Path::Straight };
-    let drawn: Vec<Vec<Drawn>> = curves.iter().map(|runs| drawn_at(runs, places, path)).collect();
-    let ends = |values: &[f64]| {
-        let known = || values.iter().filter(|y| y.is_finite());
-        known().next().zip(known().next_back()).is_some_and(|(first, last)| *last < COOLED * first)
+    let drawn: Vec<Vec<Drawn>> = curves.iter().map(|runs| drawn_at(runs, &places, path)).collect();
+    let collisions = entries[leading].runs.iter().find(|run| run.number == *number);
+    let collisions = collisions.map(|run| sampled(&run.log, TIME, COLLISIONS)).unwrap_or_default();
+    let of_reference: Vec<Vec<f64>> = drawn[leading].iter().map(|one| one.values.clone()).collect();
+    let along = Along {
+        places: &places,
+        abscissa: &form.abscissa.name,
+        clock: form.is_series.then(|| clock(&form.abscissa.name, &places, &collisions)),
+        level: if is_relative { vec![1.0; places.len()] } else { level(&of_reference, places.len()) },
     };
-    let rule = Rule { is_relative, is_in_time };
-    let is_cooling = is_relative && is_in_time && ends(&leading.1.y);
-    let quantity = match form.name == form.ordinate.name {
-        true => in_words(form.name),
-        false => format!("{}: {}", in_words(form.name), in_words(&form.ordinate.name)),
-    };
+    let terms = if is_relative { Terms::Logarithms } else { Terms::Own };
+    let is_cooling = form.is_energy && is_relative && pattern.falls_below(COOLED);
     let differences = drawn.iter().enumerate().map(|(place, own)| {
         let subject = Subject {
             label: &entries[place].label,
             reference: &entries[reference].label,
-            quantity: quantity.clone(),
+            quantity: form.quantity(),
             abscissa: in_words(&form.abscissa.name),
             time: form.time,
             is_cooling,
         };
         let other = (place != reference).then_some(&drawn[reference])?;
-        difference(own, other, places, rule, &subject)
+        difference(own, other, &along, terms, &subject)
     });
     let differences = differences.collect();
     let curves = drawn.iter().map(|own| (!own.is_empty()).then(|| curve(own, places.len()))).collect();
@@ -137,8 +196,26 @@ pub(super) fn compare(
         abscissa: form.abscissa,
         ordinate: form.ordinate.clone(),
         time: form.time,
-        places: places.clone(),
+        places,
         curves,
         differences,
     })
+}
+
+impl Form<'_> {
+    /// The quantity in words.
+    fn quantity(&self) -> String {
+        match self.name == self.ordinate.name {
+            true => in_words(self.name),
+            false => format!("{}: {}", in_words(self.name), in_words(&self.ordinate.name)),
+        }
+    }
+}
+
+/// What counts the events by which a curve over `abscissa` changes: collisions where the log has them at all places.
+fn clock<'a>(abscissa: &'a str, places: &[f64], collisions: &Sampled) -> (Vec<f64>, &'a str) {
+    let counted = collisions.at(places, Path::Straight);
+    let rises =
+        counted.iter().all(|count| count.is_finite()) && counted.windows(2).all(|pair| pair[0] < pair[1]);
+    if abscissa == TIME && rises { (counted, COLLISIONS) } else { (places.to_vec(), abscissa) }
 }

@@ -1,5 +1,6 @@
 //! Whether a cooling gas stays homogeneous, and whether hard grains may collapse: remarks from kinetic theory.
 
+use super::words::rounded;
 use crate::law::kinetic_theory::{cluster_threshold, collapse_restitution, optical_depth, shear_threshold};
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
@@ -14,7 +15,7 @@ pub(super) fn remarks<V: Vector>(scenario: &Scenario<V>, restitution: f64) -> [S
             "λ_cl",
             cluster_threshold::<V>,
             "4.72",
-            "the gas is expected to cluster and to leave Haff’s law",
+            "the gas is expected to cluster and to leave Haff’s law, which does not tell after how long",
         ),
         collapse(scenario, restitution),
     ]
@@ -82,12 +83,6 @@ fn collapse<V: Vector>(scenario: &Scenario<V>, restitution: f64) -> String {
         "Theory, inelastic collapse: r = {restitution} is {relation} r_ic = {}: {outcome} (Miller 2004, 4.8).",
         rounded(bound)
     )
-}
-
-/// Three significant digits.
-pub(super) fn rounded(value: f64) -> String {
-    let text = format!("{value:.2e}");
-    text.parse::<f64>().map_or(text, |short| short.to_string())
 }
 
 #[cfg(test)]

@@ -6,9 +6,6 @@
 /// Two-sided probability of a normal variable beyond three standard deviations.
 pub(super) const THREE_SIGMA: f64 = 0.002_699_796_063_260_19;
 
-/// Half of it, for each of two tests.
-pub(super) const HALF: f64 = 0.5 * THREE_SIGMA;
-
 /// Steps of a bisection: the bounds are then neighbours.
 const HALVINGS: usize = 200;
 

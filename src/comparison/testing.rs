@@ -1,7 +1,8 @@
 //! A made-up comparison for tests of what is written.
 
 use super::model::{
-    Compared, ComparedFigure, Comparison, Contestant, Cost, CurveOf, Difference, Peak, TheoryCurve, Verdict,
+    Basis, Compared, ComparedFigure, Comparison, Contestant, Correlation, Cost, CurveOf, Difference, Overall,
+    Peak, TheoryCurve, Verdict,
 };
 use crate::observe::units::{ENERGY, PURE, column};
 use crate::record::contents::Frame;
@@ -79,6 +80,11 @@ fn difference(values: Vec<f64>, errors: Vec<f64>) -> Difference {
         errors,
         most: Some(Peak { place: 0.5, standard_errors: 4.0 }),
         threshold: 3.5,
+        last_threshold: Some(3.125),
+        overall: Some(Overall { value: 0.25, error: 0.0625, standard_errors: 4.0, threshold: 3.25 }),
+        basis: Basis::Growth,
+        freedom: 12.0,
+        correlation: Some(Correlation { time: 0.75, clock: "time".to_owned() }),
         parts_at: None,
         verdict: Verdict::Differs,
         sentence: "They differ.".to_owned(),

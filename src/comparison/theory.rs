@@ -1,7 +1,8 @@
 //! What theory says beside what was compared: which law of `law` belongs to which curve and figure of a scenario.
 
 use super::model::{Compared, ComparedFigure, Comparison, Contestant, TheoryCurve};
-use super::stability::{remarks, rounded};
+use super::stability::remarks;
+use super::words::rounded;
 use crate::law::homogeneous_cooling::HomogeneousCooling;
 use crate::law::kinetic_theory::{
     bagnold_coefficient, chaotic_impact_density, collision_frequency, compressibility_factor,
@@ -15,12 +16,15 @@ use crate::space::Vector;
 
 /// Adds to every curve and figure what theory says of it, and remarks on what to expect of a gas that cools.
 ///
-/// The scenario is read from the text that the comparison carries; one that cannot be read has no theory.
+/// The scenario is read from the text that the comparison carries; one that cannot be read has no theory, which is said.
 pub fn add(comparison: &mut Comparison) {
     match parse(&comparison.scenario, &comparison.scenario_text, &Overrides::default()) {
         Ok(AnyScenario::Two(scenario)) => Theory::of(&scenario, comparison).add(comparison),
         Ok(AnyScenario::Three(scenario)) => Theory::of(&scenario, comparison).add(comparison),
-        Err(_) => {}
+        Err(_) if comparison.scenario_text.is_empty() => {}
+        Err(error) => {
+            comparison.remarks.push(format!("Theory is not shown: the scenario cannot be read ({error})."))
+        }
     }
 }
 

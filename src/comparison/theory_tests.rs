@@ -154,8 +154,13 @@ fn what_is_driven_or_unknown_has_no_law() {
     assert!(!none("cooling", &[]));
     let mut unknown = comparison("cooling", &[], &["hsmc"]);
     unknown.scenario_text = "nonsense".to_owned();
-    let same = unknown.clone();
+    let mut same = unknown.clone();
     add(&mut unknown);
+    assert!(
+        unknown.remarks[0].starts_with("Theory is not shown: the scenario cannot be read ("),
+        "{unknown:?}"
+    );
+    same.remarks = unknown.remarks.clone();
     assert_eq!(unknown, same);
 }
 

@@ -1,7 +1,7 @@
 //! A difference as a sentence.
 
-use super::model::{Difference, Verdict};
-use crate::statistics::Estimate;
+use super::errors::Missing;
+use super::model::{Difference, Overall, Peak};
 
 /// What a sentence is about.
 #[derive(Clone, Debug)]
@@ -25,6 +25,12 @@ pub(super) fn in_words(name: &str) -> String {
     name.replace(['_', '-'], " ")
 }
 
+/// Three significant digits.
+pub(super) fn rounded(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    text.parse::<f64>().map_or(text, |short| short.to_string())
+}
+
 /// `value` with `digits` significant digits, without a tail of zeros.
 fn short(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -46,82 +52,109 @@ fn with_error(value: f64, error: f64) -> String {
     format!("{} ± {}", short(value, more.min(13) + 2), short(error, 2))
 }
 
-/// What `difference` says at `places`.
-pub(super) fn sentence(difference: &Difference, places: &[f64], subject: &Subject<'_>) -> String {
-    let Subject { label, reference, quantity, .. } = subject;
-    let when = subject.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
-    let Some(most) = difference.most else {
-        return format!(
-            "{label}: no error is known for {quantity}{when}, since one run alone does not tell it, so \
-             nothing is said against {reference}"
-        );
+/// Where a difference that counts is shown, and what it is beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shown {
+    /// Number of the place.
+    pub(super) place: Option<usize>,
+    /// Standard errors.
+    pub(super) limit: f64,
+}
+
+impl Subject<'_> {
+    /// The quantity, with the time of a profile.
+    fn what(&self) -> String {
+        let when = self.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
+        format!("{}{when}", self.quantity)
+    }
+
+    fn at(&self, x: f64) -> String {
+        match self.abscissa.is_empty() {
+            true => String::new(),
+            false => format!(" at {} {}", self.abscissa, short(x, 3)),
+        }
+    }
+
+    /// That it is apart by `value` ± `error`, in words.
+    fn claim(&self, value: f64, error: f64, is_relative: bool) -> String {
+        let Subject { label, reference, .. } = self;
+        let amount = match is_relative {
+            true => format!("{} %", with_error(100.0 * value.abs(), 100.0 * error)),
+            false => with_error(value.abs(), error),
+        };
+        let (side, cools) = if value < 0.0 { ("below", "faster") } else { ("above", "more slowly") };
+        match self.is_cooling {
+            true => format!("{label}: cools {cools} than {reference}, {} {amount} {side}", self.what()),
+            false => format!("{label}: {} is {amount} {side} {reference}", self.what()),
+        }
+    }
+}
+
+/// What is said where no error is known, and why.
+pub(super) fn unknown_sentence(missing: Missing, subject: &Subject<'_>) -> String {
+    let why = match missing {
+        Missing::NotStated => "a single run states none",
+        Missing::Remembers => {
+            "its series remembers longer than the blocks from which a single run states one"
+        }
+        Missing::NoColumn => "a single profile has no column of errors",
+        Missing::BeginsApart => {
+            "a single run of each begins at another value, and their difference does not settle about a mean"
+        }
+        Missing::TooShort => {
+            "what one run of each adds from recording to recording holds fewer than 20 independent stretches"
+        }
     };
-    let place = |x: f64| match subject.abscissa.is_empty() {
-        true => String::new(),
-        false => format!(" at {} {}", subject.abscissa, short(x, 3)),
-    };
-    let (peak, limit) = (short(most.standard_errors, 2), short(difference.threshold, 2));
-    if difference.verdict != Verdict::Differs {
+    let Subject { label, reference, .. } = subject;
+    format!(
+        "{label}: no error is known for {} ({why}), so nothing is said against {reference}",
+        subject.what()
+    )
+}
+
+/// What `difference` says at `places`, with its `ratios` to its errors; where it counts, at the place that is `shown`.
+pub(super) fn sentence(
+    difference: &Difference,
+    shown: Option<Shown>,
+    ratios: &[f64],
+    places: &[f64],
+    subject: &Subject<'_>,
+) -> String {
+    let Subject { label, reference, .. } = subject;
+    let most = difference.most.unwrap_or(Peak { place: 0.0, standard_errors: 0.0 });
+    let Some(Shown { place: Some(place), limit }) = shown else {
         return match most.standard_errors == 0.0 {
-            true => format!("{label}: {quantity}{when} is equal to that of {reference}"),
+            true => format!("{label}: {} is equal to that of {reference}", subject.what()),
             false => format!(
-                "{label}: {quantity}{when} agrees with {reference}, at most {peak} standard errors apart{} (differs \
-                 beyond {limit})",
-                place(most.place)
+                "{label}: {} agrees with {reference}, at most {} standard errors apart{} (differs beyond {})",
+                subject.what(),
+                short(most.standard_errors, 2),
+                subject.at(most.place),
+                short(difference.threshold, 2)
             ),
         };
-    }
-    let shown = places.iter().position(|x| *x == most.place).unwrap_or(0);
-    let (value, error) = (difference.values[shown], difference.errors[shown]);
-    let amount = match difference.is_relative {
-        true => format!("{} %", with_error(100.0 * value.abs(), 100.0 * error)),
-        false => with_error(value.abs(), error),
     };
-    let (side, cools) = if value < 0.0 { ("below", "faster") } else { ("above", "more slowly") };
-    let claim = match subject.is_cooling {
-        true => format!("cools {cools} than {reference}, {quantity}{when} {amount} {side}"),
-        false => format!("{quantity}{when} is {amount} {side} {reference}"),
-    };
-    let apart = match most.standard_errors.is_finite() {
-        true => format!("{peak} standard errors, beyond {limit}"),
+    let claim = subject.claim(difference.values[place], difference.errors[place], difference.is_relative);
+    let apart = match ratios[place].is_finite() {
+        true => format!("{} standard errors, beyond {}", short(ratios[place], 2), short(limit, 2)),
         false => "the same in all replicas".to_owned(),
     };
     let stays = difference
         .parts_at
         .filter(|_| places.len() > 1)
         .map_or_else(String::new, |x| format!("; apart from {} {} on", subject.abscissa, short(x, 3)));
-    format!("{label}: {claim}{} ({apart}){stays}", place(most.place))
+    format!("{claim}{} ({apart}){stays}", subject.at(places[place]))
 }
 
-/// What whole curves say where no single place says it: `all` is their mean difference, `ratios` that in standard errors
-/// and the limit.
-pub(super) fn overall_sentence(
-    all: Estimate,
-    is_relative: bool,
-    ratios: [f64; 2],
-    subject: &Subject<'_>,
-) -> String {
-    let Subject { label, reference, quantity, .. } = subject;
-    let when = subject.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
-    let error = all.standard_error.unwrap_or(f64::NAN);
-    let amount = match is_relative {
-        true => format!("{} %", with_error(100.0 * all.value.abs(), 100.0 * error)),
-        false => with_error(all.value.abs(), error),
-    };
-    let (side, cools) = if all.value < 0.0 { ("below", "faster") } else { ("above", "more slowly") };
-    let [ratio, limit] = ratios.map(|ratio| short(ratio, 2));
-    let apart = format!(
-        "({ratio} standard errors, beyond {limit}; the error is too wide at any single {})",
+/// What whole curves say where no single place says it.
+pub(super) fn overall_sentence(all: Overall, is_relative: bool, subject: &Subject<'_>) -> String {
+    format!(
+        "{} in the mean of the whole curve ({} standard errors, beyond {}; the error is too wide at any single {})",
+        subject.claim(all.value, all.error, is_relative),
+        short(all.standard_errors, 2),
+        short(all.threshold, 2),
         subject.abscissa
-    );
-    match subject.is_cooling {
-        true => format!(
-            "{label}: cools {cools} than {reference}, {quantity}{when} {amount} {side} in the mean of the whole curve {apart}"
-        ),
-        false => format!(
-            "{label}: {quantity}{when} is {amount} {side} {reference} in the mean of the whole curve {apart}"
-        ),
-    }
+    )
 }
 
 #[cfg(test)]

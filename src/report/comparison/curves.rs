@@ -15,9 +15,9 @@ const TIMES: usize = 3;
 
 /// What every pair of plots needs to be read.
 const HOW_TO_READ: &str = "<p class=\"note\">Above, each engine with a band of one standard error. Below, its difference \
-    from the reference: the dark band is one standard error, the pale one goes as far as the threshold of the verdict. An \
-    engine differs where its pale band does not touch the line at zero; a thin upright line marks the place from which on \
-    it does.</p>\n";
+    from the reference: the dark band is one standard error, the pale one goes as far as chance can bring one of all places. An \
+    engine differs where its pale band does not touch the line at zero, or from a thin upright line on: from there to the \
+    end it is apart, tested from the last place backwards.</p>\n";
 
 /// All series.
 pub(super) fn series(comparison: &Comparison) -> String {

@@ -36,7 +36,7 @@ pub(super) fn html(comparison: &Comparison) -> String {
     html.push_str("</table></div>\n");
     html.push_str(
         "<p class=\"note\">Two differ where they are farther apart than the threshold: 3 standard errors for a single number, \
-         more for a curve, which has many places at which chance could part them. Of a profile that was taken at several \
+         more for a curve, which has many places at which chance could part them, and for errors that few runs tell. Of a profile that was taken at several \
          times the line tells of the one where they are farthest apart.</p>\n",
     );
     html
