@@ -1,0 +1,124 @@
+//! A log played in the terminal, at the pace that was asked for.
+
+use std::io::{self, IsTerminal, Write, stdout};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::Ordering::Relaxed;
+
+use console::Term;
+
+use super::{Exit, bad_input};
+use crate::cli::complain;
+use crate::cli::run::{STOP, prepare};
+use crate::record::contents::{Frame, Walls};
+use crate::record::overview::overview;
+use crate::record::walk::each_frame;
+use crate::replay::scenario_of;
+use crate::replay::selection::Selection;
+use crate::replay::text_picture::Canvas;
+use crate::stopwatch::Stopwatch;
+
+/// The other screen of the terminal, without a cursor; and back.
+const BEGIN: &str = "\x1b[?1049h\x1b[?25l";
+const END: &str = "\x1b[?25h\x1b[?1049l";
+/// The upper left corner; the rest of a line, and of the screen, is cleared.
+const HOME: &str = "\x1b[H";
+const CLEAR_LINE: &str = "\x1b[K";
+const CLEAR_BELOW: &str = "\x1b[J";
+/// Seconds that one is shown the clock at a time, so that Ctrl-C is heard.
+const PATIENCE: f64 = 0.1;
+
+pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
+    if !(speed.is_finite() && speed > 0.0) {
+        return bad_input(&format!("--speed {speed}: has to be above 0, in simulated time for a second"));
+    }
+    if !stdout().is_terminal() {
+        return bad_input(
+            "--speed: standard output is no terminal to play in; --frames DIR writes pictures, and without either \
+             the series is printed",
+        );
+    }
+    let found = match overview(log) {
+        Ok(found) => found,
+        Err(error) => return bad_input(&error.to_string()),
+    };
+    let diameter = match scenario_of(log, &found.metadata, &found.scenario) {
+        Ok(scenario) => scenario.diameter(),
+        Err(error) => return bad_input(&error.to_string()),
+    };
+    let mut picker = selection.picker();
+    let Some(&begin) = found.times.iter().find(|&&time| selection.spans(time)) else {
+        return bad_input(&format!("{} has no frame {}", log.display(), selection.words()));
+    };
+    if let Err(error) = prepare(None) {
+        complain(&error);
+        return Exit::RunFailed;
+    }
+    let mut film = Film {
+        walls: found.walls.unwrap_or_default(),
+        diameter,
+        is_coloured: std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
+        watch: Stopwatch::default(),
+        failure: None,
+    };
+    film.show(BEGIN);
+    let read = each_frame(log, &mut |_, frame| {
+        if picker.takes(frame.time) {
+            film.wait((frame.time - begin) / speed);
+            film.draw(&frame);
+        }
+        if STOP.load(Relaxed) || film.failure.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    film.show(END);
+    match (read, film.failure) {
+        (Err(error), _) => bad_input(&error.to_string()),
+        (Ok(()), Some(failure)) if failure.kind() != io::ErrorKind::BrokenPipe => {
+            complain(&format!("cannot write to the terminal: {failure}"));
+            Exit::RunFailed
+        }
+        _ if STOP.load(Relaxed) => Exit::Interrupted,
+        _ => Exit::Done,
+    }
+}
+
+/// What is on the screen.
+struct Film {
+    walls: Walls,
+    diameter: f64,
+    is_coloured: bool,
+    watch: Stopwatch,
+    failure: Option<io::Error>,
+}
+
+impl Film {
+    /// Waits until so many seconds have gone by since the beginning, or somebody has had enough.
+    fn wait(&self, seconds: f64) {
+        while self.watch.seconds() < seconds && !STOP.load(Relaxed) {
+            self.watch.sleep_until(seconds.min(self.watch.seconds() + PATIENCE));
+        }
+    }
+
+    /// Draws `frame` as large as the terminal is now, with a line about it below.
+    fn draw(&mut self, frame: &Frame) {
+        let (lines, columns) = Term::stdout().size();
+        let room = usize::from(lines).saturating_sub(2).max(1);
+        let canvas = Canvas::new(&self.walls, usize::from(columns), room, self.is_coloured);
+        let mut text = HOME.to_owned();
+        for line in canvas.draw(frame, self.diameter) {
+            text += &format!("{line}{CLEAR_LINE}\r\n");
+        }
+        text += &format!("t = {:.4}, {} grains{CLEAR_LINE}{CLEAR_BELOW}", frame.time, frame.grains);
+        self.show(&text);
+    }
+
+    fn show(&mut self, text: &str) {
+        let mut out = stdout().lock();
+        if let Err(failure) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+            self.failure.get_or_insert(failure);
+        }
+    }
+}
