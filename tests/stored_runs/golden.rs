@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use glam::{DVec2, DVec3};
 use grainflow::observe::measure::Profile;
@@ -21,8 +21,10 @@ use grainflow::space::Vector;
 
 /// The newest format; a new one gets a folder of its own, and this one stays.
 const FORMAT: &str = "1";
-/// All golden logs of a format together [bytes].
-const MOST_BYTES: u64 = 150_000;
+/// The longest that a golden log may be [bytes].
+const MOST_BYTES: u64 = 20_000;
+/// When its run is stopped [time]: long before its limit, so that measures have taken few samples.
+const END: f64 = 0.5;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("format-{FORMAT}"))
@@ -47,11 +49,11 @@ fn scenario(engine: EngineKind, dimension: usize) -> String {
     let place = if dimension == 2 { "[8.0]" } else { "[4.0, 4.0]" };
     format!(
         "title = \"Golden\"\ndimension = {dimension}\nseed = 11\ngravity = {}\n\
-         [engine]\nkind = \"{}\"\ncell_size = 2.0\ntime_step = {{ fixed = 0.05 }}\n[domain]\nsize = {}\n\
+         [engine]\nkind = \"{}\"\ncell_size = 2.0\ntime_step = {{ fixed = 0.0625 }}\n[domain]\nsize = {}\n\
          [boundary]\n{side}{up}.lower = {{ wall = \"rough\" }}\n{up}.upper = \"open\"\n\
          [particles]\ncount = 12\nrestitution = 0.9\n[initial]\nvelocities = {{ maxwell = 1.0 }}\n\
-         [source]\ncount = 3\nrate = 4.0\nposition = {place}\nwidth = 4.0\nheight = 4.0\nvelocity = {}\n\
-         [run]\ntime = 1.0\n[record]\nframes = 2\nstates = 1\nmeasures = [\"energy\", \"density-profile\"]\n",
+         [source]\ncount = 3\nrate = 8.0\nposition = {place}\nwidth = 4.0\nheight = 4.0\nvelocity = {}\n\
+         [run]\ntime = 10.0\n[record]\nevery = 0.25\nstates = 0\nmeasures = [\"energy\", \"density-profile\"]\n",
         list(0.0, -1.0),
         engine.name(),
         list(if dimension == 2 { 16.0 } else { 8.0 }, 30.0),
@@ -66,7 +68,8 @@ fn write(engine: EngineKind, dimension: usize, log: &Path) {
     let parsed = parse("golden", &text, &overrides).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let work = tempfile::tempdir().unwrap();
     let run_folder = work.path().join("run");
-    run(&parsed, &run_folder, false, &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let stop = AtomicBool::new(false);
+    run(&parsed, &run_folder, false, &stop, &mut |status| stop.store(status.time >= END, Relaxed)).unwrap();
     fs::copy(run_folder.join("log.mcap"), log).unwrap();
 }
 
@@ -89,10 +92,9 @@ fn every_engine_has_its_golden_logs_and_they_are_small() {
         let log = place(engine, dimension);
         let remedy = "cargo test --release --test stored_runs -- --ignored mint";
         assert!(log.is_file(), "{} is missing: {remedy}", log.display());
+        let bytes = fs::metadata(&log).unwrap().len();
+        assert!(bytes <= MOST_BYTES, "{}: {bytes} bytes", log.display());
     }
-    let bytes = |entry: fs::DirEntry| entry.metadata().unwrap().len();
-    let total: u64 = fs::read_dir(folder()).unwrap().map(|entry| bytes(entry.unwrap())).sum();
-    assert!(total <= MOST_BYTES, "{total} bytes");
 }
 
 #[test]
@@ -107,7 +109,7 @@ fn logs_of_every_format_are_read() {
                 "2" => read_states::<DVec2>(&log).unwrap().len(),
                 _ => read_states::<DVec3>(&log).unwrap().len(),
             };
-            assert!(states > 1, "{}", log.display());
+            assert!(states > 0, "{}", log.display());
             read += 1;
         }
     }
@@ -167,7 +169,7 @@ fn key(profile: &Profile) -> (&str, u64) {
 fn compare_states<V: Vector>(golden: &Path, now: &Path) {
     let [of_golden, of_now] = [golden, now].map(|path| read_states::<V>(path).unwrap());
     assert_eq!(of_golden.len(), of_now.len(), "{}: states", golden.display());
-    assert!(of_golden.len() > 1);
+    assert!(!of_golden.is_empty());
     for (then, now) in of_golden.into_iter().zip(of_now) {
         for (name, memory) in &then.memories {
             let found = now.memories.iter().find(|one| one.0 == *name);
