@@ -101,7 +101,7 @@ fn info_tells_what_the_log_holds() {
     assert_eq!(value("frames"), "8 of up to 200 grains; 8 show up to 50 points");
     assert!(value("saved states").starts_with("4, at t = "));
     assert!(value("channel /measures").starts_with("8 messages, "));
-    assert_eq!(value("state"), "whole, every checksum holds");
+    assert_eq!(value("condition"), "whole, every checksum holds");
     let log = place.path("run/log.mcap");
     let bytes = fs::read(&log).unwrap();
     fs::write(&log, &bytes[..bytes.len() * 2 / 3]).unwrap();

@@ -31,7 +31,7 @@ fn told(log: &Path, found: &Overview) -> String {
     let rest = found.metadata.iter().filter(|(key, _)| HEAD.iter().all(|(known, _)| known != key));
     lines.extend(rest.map(|(key, value)| line(key, value.clone())));
     lines.push(line(
-        "state",
+        "condition",
         found.cut_off.clone().unwrap_or_else(|| "whole, every checksum holds".to_owned()),
     ));
     lines.push(line("recordings", recordings(found)));

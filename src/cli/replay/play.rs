@@ -59,6 +59,7 @@ pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
         diameter,
         is_coloured: std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
         watch: Stopwatch::default(),
+        last: String::new(),
         failure: None,
     };
     film.show(BEGIN);
@@ -74,6 +75,9 @@ pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
         }
     });
     film.show(END);
+    // The last picture stays on the usual screen.
+    let last = std::mem::take(&mut film.last);
+    film.show(&last);
     match (read, film.failure) {
         (Err(error), _) => bad_input(&error.to_string()),
         (Ok(()), Some(failure)) if failure.kind() != io::ErrorKind::BrokenPipe => {
@@ -91,6 +95,8 @@ struct Film {
     diameter: f64,
     is_coloured: bool,
     watch: Stopwatch,
+    /// The last picture, as lines.
+    last: String,
     failure: Option<io::Error>,
 }
 
@@ -107,12 +113,11 @@ impl Film {
         let (lines, columns) = Term::stdout().size();
         let room = usize::from(lines).saturating_sub(2).max(1);
         let canvas = Canvas::new(&self.walls, usize::from(columns), room, self.is_coloured);
-        let mut text = HOME.to_owned();
-        for line in canvas.draw(frame, self.diameter) {
-            text += &format!("{line}{CLEAR_LINE}\r\n");
-        }
-        text += &format!("t = {:.4}, {} grains{CLEAR_LINE}{CLEAR_BELOW}", frame.time, frame.grains);
-        self.show(&text);
+        let mut lines = canvas.draw(frame, self.diameter);
+        lines.push(format!("t = {:.4}, {} grains", frame.time, frame.grains));
+        let next = format!("{CLEAR_LINE}\r\n");
+        self.show(&format!("{HOME}{}{CLEAR_LINE}{CLEAR_BELOW}", lines.join(&next)));
+        self.last = lines.join("\n") + "\n";
     }
 
     fn show(&mut self, text: &str) {
