@@ -53,7 +53,7 @@ enum FormatName {
     Lammps,
     /// Points of VTK, a file for each frame and a .pvd with the times: ParaView, OVITO
     Vtp,
-    /// Density, velocity and temperature on a grid, a file for each frame and a .pvd: ParaView
+    /// Density, velocity, temperature on a grid, a file for each frame and a .pvd: ParaView
     Vti,
     /// Extended XYZ, one file: OVITO, ASE
     Xyz,
@@ -74,8 +74,8 @@ impl FormatName {
 }
 
 const EXAMPLES: &str = "Examples:
-  grainflow export out/heap-hsmc --format lammps               out/heap-hsmc/log.lammpstrj, for OVITO
-  grainflow export out/heap-hsmc --format vtp --out heap       heap/particles.pvd, for ParaView
+  grainflow export out/heap-hsmc --format lammps             out/heap-hsmc/log.lammpstrj, for OVITO
+  grainflow export out/heap-hsmc --format vtp --out heap     heap/particles.pvd, for ParaView
   grainflow export out/heap-hsmc --format vti --states --cell-size 4
   grainflow export out/heap-hsmc --format csv --from 1000 --every 10";
 

@@ -10,9 +10,11 @@ pub mod text_picture;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::record::contents::Walls;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Units};
 use crate::scenario::{Overrides, parse};
+use crate::space::Vector;
 
 /// The log that `path` means: itself, or the one of a run folder.
 pub fn log_at(path: &Path) -> PathBuf {
@@ -40,6 +42,14 @@ pub fn scenario_of(
         writer: metadata.get("version").map_or_else(|| "unknown".to_owned(), Clone::clone),
         source,
     })
+}
+
+/// The box of `scenario`, as logs describe it.
+pub fn walls_of(scenario: &AnyScenario) -> Walls {
+    match scenario {
+        AnyScenario::Two(scenario) => Walls::new(&scenario.boundary, Vector::ZERO, scenario.size),
+        AnyScenario::Three(scenario) => Walls::new(&scenario.boundary, Vector::ZERO, scenario.size),
+    }
 }
 
 /// The names of the units that a log with this `metadata` uses.

@@ -8,7 +8,7 @@ use crate::cli::run::{STOP, prepare};
 use crate::export::target::Target;
 use crate::record::overview::overview;
 use crate::replay::film::{View, write_pictures};
-use crate::replay::scenario_of;
+use crate::replay::{scenario_of, walls_of};
 
 impl Work<'_> {
     /// Writes pictures of `width` pixels into `folder`.
@@ -23,7 +23,7 @@ impl Work<'_> {
         }
         let target = Target::folder(folder, self.force, &["png"], "--frames")?;
         prepare(None).map_err(|error| Failure::Input(error.to_string()))?;
-        let view = View { walls: found.walls, diameter: scenario.diameter(), width };
+        let view = View { walls: Some(walls_of(&scenario)), diameter: scenario.diameter(), width };
         let written = write_pictures(self.log, target.working(), self.selection, &view, &STOP)?;
         let pictures = written.map_err(|source| target.failed(source))?;
         if STOP.load(Relaxed) {

@@ -13,9 +13,9 @@ use crate::cli::run::{STOP, prepare};
 use crate::record::contents::{Frame, Walls};
 use crate::record::overview::overview;
 use crate::record::walk::each_frame;
-use crate::replay::scenario_of;
 use crate::replay::selection::Selection;
 use crate::replay::text_picture::Canvas;
+use crate::replay::{scenario_of, walls_of};
 use crate::stopwatch::Stopwatch;
 
 /// The other screen of the terminal, without a cursor; and back.
@@ -29,49 +29,24 @@ const CLEAR_BELOW: &str = "\x1b[J";
 const PATIENCE: f64 = 0.1;
 
 pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
-    if !(speed.is_finite() && speed > 0.0) {
-        return bad_input(&format!("--speed {speed}: has to be above 0, in simulated time for a second"));
-    }
-    if !stdout().is_terminal() {
-        return bad_input(
-            "--speed: standard output is no terminal to play in; --frames DIR writes pictures, and without either \
-             the series is printed",
-        );
-    }
-    let found = match overview(log) {
-        Ok(found) => found,
-        Err(error) => return bad_input(&error.to_string()),
-    };
-    let diameter = match scenario_of(log, &found.metadata, &found.scenario) {
-        Ok(scenario) => scenario.diameter(),
-        Err(error) => return bad_input(&error.to_string()),
-    };
-    let mut picker = selection.picker();
-    let Some(&begin) = found.times.iter().find(|&&time| selection.spans(time)) else {
-        return bad_input(&format!("{} has no frame {}", log.display(), selection.words()));
+    let (mut film, begin) = match film_of(log, selection, speed) {
+        Ok(film) => film,
+        Err(mistake) => return bad_input(&mistake),
     };
     if let Err(error) = prepare(None) {
         complain(&error);
         return Exit::RunFailed;
     }
-    let mut film = Film {
-        walls: found.walls.unwrap_or_default(),
-        diameter,
-        is_coloured: std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
-        watch: Stopwatch::default(),
-        last: String::new(),
-        failure: None,
-    };
+    let mut picker = selection.picker();
     film.show(BEGIN);
     let read = each_frame(log, &mut |_, frame| {
         if picker.takes(frame.time) {
             film.wait((frame.time - begin) / speed);
             film.draw(&frame);
         }
-        if STOP.load(Relaxed) || film.failure.is_some() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+        match STOP.load(Relaxed) || film.failure.is_some() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     });
     film.show(END);
@@ -87,6 +62,34 @@ pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
         _ if STOP.load(Relaxed) => Exit::Interrupted,
         _ => Exit::Done,
     }
+}
+
+/// The film of `log` before its first picture, and when that was taken [time]; or what is wrong.
+fn film_of(log: &Path, selection: Selection, speed: f64) -> Result<(Film, f64), String> {
+    if !(speed.is_finite() && speed > 0.0) {
+        return Err(format!("--speed {speed}: has to be above 0, in simulated time for a second"));
+    }
+    if !stdout().is_terminal() {
+        return Err(
+            "--speed: standard output is no terminal to play in; --frames DIR writes pictures, and without \
+                    either the series is printed"
+                .to_owned(),
+        );
+    }
+    let found = overview(log).map_err(|error| error.to_string())?;
+    let scenario =
+        scenario_of(log, &found.metadata, &found.scenario).map_err(|unknown| unknown.to_string())?;
+    let begin = found.times.iter().copied().find(|&time| selection.spans(time));
+    let begin = begin.ok_or_else(|| format!("{} has no frame {}", log.display(), selection.words()))?;
+    let film = Film {
+        walls: walls_of(&scenario),
+        diameter: scenario.diameter(),
+        is_coloured: std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
+        watch: Stopwatch::default(),
+        last: String::new(),
+        failure: None,
+    };
+    Ok((film, begin))
 }
 
 /// What is on the screen.
