@@ -53,7 +53,7 @@ enum FormatName {
     Lammps,
     /// Points of VTK, a file for each frame and a .pvd with the times: ParaView, OVITO
     Vtp,
-    /// Density, velocity, temperature on a grid, a file for each frame and a .pvd: ParaView
+    /// Fields on a grid, a file for each frame and a .pvd with the times: ParaView
     Vti,
     /// Extended XYZ, one file: OVITO, ASE
     Xyz,
