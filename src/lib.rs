@@ -18,7 +18,7 @@
 //!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
 //! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
-//! ([`scenario`], [`simulation`], [`run`], [`comparison`], [`report`]), campaigns of many runs
+//! ([`scenario`], [`simulation`], [`run`], [`replay`], [`export`], [`comparison`], [`report`]), campaigns of many runs
 //! ([`campaign`]) and the command line ([`cli`]).
 
 pub mod random;
@@ -35,6 +35,8 @@ pub mod observe;
 pub mod record;
 
 pub mod comparison;
+pub mod export;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod scenario;

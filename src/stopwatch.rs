@@ -1,6 +1,6 @@
 //! The wall clock and the machine: the only file that looks at either.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::engine::Laps;
 
@@ -44,6 +44,14 @@ impl Stopwatch {
     /// Seconds since the stopwatch was made.
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
+    }
+
+    /// Sleeps until this many seconds have gone by since the stopwatch was made; not at all where they have.
+    pub fn sleep_until(&self, seconds: f64) {
+        let rest = seconds - self.seconds();
+        if rest > 0.0 {
+            std::thread::sleep(Duration::try_from_secs_f64(rest).unwrap_or(Duration::MAX));
+        }
     }
 
     /// Seconds of each verb, in the order of their first laps.

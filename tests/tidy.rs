@@ -13,7 +13,7 @@ const FLOORS: [(&str, &[&str]); 8] = [
     ("laws", &["law"]),
     ("engines", &["engine"]),
     ("observation", &["observe", "record"]),
-    ("runs", &["comparison", "report", "run", "scenario", "simulation", "stopwatch"]),
+    ("runs", &["comparison", "export", "replay", "report", "run", "scenario", "simulation", "stopwatch"]),
     ("campaigns", &["campaign"]),
     ("command line", &["cli"]),
 ];

@@ -5,10 +5,13 @@
 mod calibrate;
 mod check;
 mod compare;
+mod export;
 mod input;
 mod progress;
+mod replay;
 mod run;
 mod scenarios;
+mod span;
 mod sweep;
 
 use std::process::ExitCode;
@@ -45,6 +48,8 @@ const EXAMPLES: &str = "Examples:
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow compare cooling --engines hsmc,event-driven    the same grains through both
+  grainflow replay out/heap-hsmc --speed 20      watch it in the terminal
+  grainflow export out/heap-hsmc --format vtp    for ParaView
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
@@ -56,6 +61,8 @@ enum Command {
     Calibrate(calibrate::CalibrateArguments),
     Sweep(sweep::SweepArguments),
     Compare(compare::CompareArguments),
+    Replay(replay::ReplayArguments),
+    Export(export::ExportArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -67,10 +74,26 @@ pub fn main() -> ExitCode {
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Replay(arguments) => replay::replay(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };
     ExitCode::from(exit as u8)
+}
+
+/// Prints `text`, or as much of it as somebody reads: one who closes the pipe has seen enough.
+fn print_text(text: &str) -> Exit {
+    use std::io::{ErrorKind, Write, stdout};
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Exit::Done,
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Exit::Done,
+        Err(error) => {
+            complain(&format!("cannot write to standard output: {error}"));
+            Exit::RunFailed
+        }
+    }
 }
 
 /// Says what went wrong.

@@ -8,6 +8,7 @@
 pub mod contents;
 pub mod error;
 pub mod frame;
+pub mod overview;
 pub mod reader;
 pub mod recover;
 mod saved;
@@ -15,5 +16,6 @@ mod scan;
 mod schema;
 pub mod state;
 pub mod time_scale;
+pub mod walk;
 mod walls;
 pub mod writer;

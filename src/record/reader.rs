@@ -1,6 +1,7 @@
 //! Reads a log: its contents for reports and comparisons, its saved states for resuming.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use prost::Message;
@@ -8,14 +9,14 @@ use prost::Message;
 use super::contents::RunLog;
 use super::error::LogError;
 use super::frame::frame_of;
-use super::saved::Assembly;
 use super::scan::{Event, Fault, scan};
 use super::schema::foxglove::{PointCloud, SceneUpdate};
-use super::schema::grainflow::{Profile as ProfileMessage, State};
+use super::schema::grainflow::Profile as ProfileMessage;
 use super::schema::measures::{MeasuresMessage, columns_of};
 use super::schema::topic;
 use super::schema::units::dimension_of;
 use super::state::SavedState;
+use super::walk::each_state;
 use super::walls::walls_of;
 use crate::observe::measure::{Column, Profile};
 use crate::space::Vector;
@@ -24,6 +25,13 @@ use crate::space::Vector;
 /// complete and says so in [`RunLog::cut_off`]; one with wrong bytes is refused.
 pub fn read_log(path: &Path) -> Result<RunLog, LogError> {
     let mut contents = Contents::default();
+    let cut_off = scan(path, &mut |event| contents.add(event))?;
+    Ok(RunLog { cut_off, ..contents.log })
+}
+
+/// The same without the pictures of the grains, which are nearly all of a large log.
+pub fn read_tables(path: &Path) -> Result<RunLog, LogError> {
+    let mut contents = Contents { without_frames: true, ..Contents::default() };
     let cut_off = scan(path, &mut |event| contents.add(event))?;
     Ok(RunLog { cut_off, ..contents.log })
 }
@@ -45,32 +53,21 @@ pub fn read_origin(path: &Path) -> Result<(BTreeMap<String, String>, String), Lo
 /// All complete saved states of the log at `path`, in the order of their times.
 pub fn read_states<V: Vector>(path: &Path) -> Result<Vec<SavedState<'static, V>>, LogError> {
     let mut states = Vec::new();
-    each_state(path, |state| states.push(state))?;
+    each_state(path, &mut |state| {
+        states.push(state);
+        ControlFlow::Continue(())
+    })?;
     Ok(states)
 }
 
 /// The last complete saved state of the log at `path`, from which its run can go on.
 pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<'static, V>>, LogError> {
     let mut last = None;
-    each_state(path, |state| last = Some(state))?;
-    Ok(last)
-}
-
-fn each_state<V: Vector>(path: &Path, mut take: impl FnMut(SavedState<'static, V>)) -> Result<(), LogError> {
-    let mut assembly = Assembly::<V>::default();
-    scan(path, &mut |event| {
-        if let Event::Message { topic: topic::STATE, data, .. } = event {
-            let part = State::decode(data).map_err(Fault::damage)?;
-            if part.dimension as usize != V::DIMENSION {
-                return Err(Fault::Dimension(part.dimension, V::DIMENSION));
-            }
-            if let Some(state) = assembly.add(&part).map_err(Fault::damage)? {
-                take(state);
-            }
-        }
-        Ok(())
+    each_state(path, &mut |state| {
+        last = Some(state);
+        ControlFlow::Continue(())
     })?;
-    Ok(())
+    Ok(last)
 }
 
 /// The contents so far.
@@ -81,6 +78,8 @@ struct Contents {
     numbers: Vec<u32>,
     /// Place in the sequence and grains in the gas of every recording.
     recordings: Vec<(u32, u64)>,
+    /// Whether pictures are passed over.
+    without_frames: bool,
 }
 
 impl Contents {
@@ -95,6 +94,7 @@ impl Contents {
             }
             Event::Message { topic, sequence, data } => match topic {
                 topic::MEASURES => self.measures(sequence, data)?,
+                topic::PARTICLES if self.without_frames => {}
                 topic::PARTICLES => self.frame(sequence, data)?,
                 topic::PROFILES => self.log.profiles.push(profile(data)?),
                 topic::WALLS => {

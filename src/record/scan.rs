@@ -57,6 +57,7 @@ pub(crate) fn scan(
         match done {
             Ok(()) => {}
             Err(Fault::End) => return state.verdict(path, length, false),
+            Err(Fault::Enough) => return Ok(None),
             Err(fault) => return Err(fault.at(path, position)),
         }
     }
@@ -68,6 +69,8 @@ pub(crate) fn scan(
 pub(crate) enum Fault {
     /// The file ends too early.
     End,
+    /// Nothing: the visitor has seen what it wanted.
+    Enough,
     /// There is no header.
     NoHeader,
     /// The format is newer: its number and the version that wrote it.
@@ -86,7 +89,7 @@ impl Fault {
     fn at(self, path: &Path, position: u64) -> LogError {
         let path = path.to_owned();
         match self {
-            Fault::End | Fault::NoHeader => LogError::NoHeader { path },
+            Fault::End | Fault::Enough | Fault::NoHeader => LogError::NoHeader { path },
             Fault::Newer(found, writer) => LogError::Newer { path, found, writer },
             Fault::Dimension(found, wanted) => LogError::Dimension { path, found, wanted },
             Fault::Damage(reason) => LogError::Damaged { path, position, reason },

@@ -34,6 +34,11 @@ const FIELD: [[u8; 3]; 9] = [
     [0xfd, 0xe7, 0x25],
 ];
 
+/// The colour of a field at `share` of its range, held to 0 … 1, in sRGB.
+pub fn field_colour(share: f64) -> [u8; 3] {
+    ColourMap::Field.at(share)
+}
+
 impl ColourMap {
     /// The colours between which the map is a straight line.
     pub(super) fn anchors(self) -> &'static [[u8; 3]] {

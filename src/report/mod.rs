@@ -2,6 +2,7 @@
 
 mod axis;
 pub mod calibration;
+mod camera;
 mod colour;
 mod comparison;
 mod curve;
@@ -30,6 +31,8 @@ mod wave_plots;
 
 use serde_json::{Map, Value};
 
+pub use camera::Camera;
+pub use colour::field_colour;
 pub use comparison::judgement::{Judgement, judgements};
 pub use picture::grains_png;
 pub use sweep_model::{Abscissa, FigureCurve, MeanPoint, PowerLaw, SweepCase, SweepFigure, SweepReport};

@@ -48,9 +48,19 @@ impl Scene {
             || frames.iter().any(|f| f.positions.iter().any(|p| p[2] != 0.0)),
             |walls| !walls.sides[2][0].is_empty(),
         );
-        let span = |axis: usize| window[axis][1] - window[axis][0];
-        let is_turned = !is_deep && span(1) > TALL * span(0);
-        Self { is_deep, is_turned, window, sides, speeds: speeds(frames, own_speeds) }
+        let speeds = speeds(frames, own_speeds);
+        Self { is_deep, is_turned: is_turned(is_deep, &window), window, sides, speeds }
+    }
+
+    /// Widens the view until it shows what `other` shows, with the greater of both scales of speed.
+    pub(super) fn include(&mut self, other: &Self) {
+        for (ends, more) in self.window.iter_mut().zip(&other.window) {
+            *ends = [ends[0].min(more[0]), ends[1].max(more[1])];
+        }
+        self.is_deep |= other.is_deep;
+        self.is_turned = is_turned(self.is_deep, &self.window);
+        let fastest = self.speeds.iter().chain(&other.speeds).copied().fold(0.0, f64::max);
+        self.speeds.iter_mut().for_each(|speed| *speed = fastest);
     }
 
     /// Length of what is shown along `axis`.
@@ -63,6 +73,12 @@ impl Scene {
         let across = if self.is_deep { self.span(0) / self.span(2) } else { self.span(0) / self.span(1) };
         if self.is_turned { 1.0 / across } else { across }
     }
+}
+
+/// Whether a plane is so tall that it is drawn lying.
+fn is_turned(is_deep: bool, window: &[[f64; 2]; 3]) -> bool {
+    let span = |axis: usize| window[axis][1] - window[axis][0];
+    !is_deep && span(1) > TALL * span(0)
 }
 
 /// Smallest box around all grains, with room of a diameter.

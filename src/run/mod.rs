@@ -3,7 +3,7 @@
 pub mod beginning;
 pub mod folder;
 mod recorder;
-mod series;
+pub(crate) mod series;
 mod summary;
 
 use std::path::{Path, PathBuf};

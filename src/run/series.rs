@@ -33,7 +33,7 @@ pub(super) fn write_tables<V: Vector>(
 }
 
 /// All profiles of one name below each other, with their times in the first column.
-fn profile_table(profiles: &[&Profile], units: &Units) -> String {
+pub(crate) fn profile_table(profiles: &[&Profile], units: &Units) -> String {
     let time = Column { name: "time".to_owned(), unit: Dimension { time: 1, ..Dimension::default() } };
     let columns: Vec<Column> = std::iter::once(time).chain(profiles[0].columns.iter().cloned()).collect();
     let rows: Vec<Vec<f64>> = profiles
@@ -50,7 +50,7 @@ fn profile_table(profiles: &[&Profile], units: &Units) -> String {
 
 /// A header line `name [unit]`, then one line per row; numbers in the shortest form that reads back
 /// to the same bits, nothing where there is no number.
-fn table<'a>(columns: &[Column], units: &Units, rows: impl Iterator<Item = &'a [f64]>) -> String {
+pub(crate) fn table<'a>(columns: &[Column], units: &Units, rows: impl Iterator<Item = &'a [f64]>) -> String {
     let header: Vec<String> =
         columns.iter().map(|column| format!("{} [{}]", column.name, unit_name(column.unit, units))).collect();
     let mut text = header.join(",") + "\n";

@@ -18,7 +18,8 @@ use crate::observe::measure::Column;
 /// Name of the message.
 pub(crate) const NAME: &str = "grainflow.Measures";
 
-const TIME: u32 = 1;
+/// Number of the field that holds the time.
+pub(crate) const TIME: u32 = 1;
 const STATE_HASH: u32 = 2;
 const GRAINS_IN_GAS: u32 = 3;
 const FIRST_COLUMN: u32 = 16;

@@ -1,0 +1,78 @@
+//! The report of a log, made again.
+
+use std::path::Path;
+
+use serde_json::{Map, Value};
+
+use super::{Failure, Work, write_file};
+use crate::record::contents::RunLog;
+use crate::record::reader::read_log;
+use crate::replay::selection::Selection;
+use crate::replay::tables::tables_of;
+use crate::report::render;
+
+impl Work<'_> {
+    /// Writes the report into `file`. Figures come from the summary beside the log, and belong to the whole run: those of a part
+    /// would have to be measured again.
+    pub(super) fn page(&self, file: &Path) -> Result<(), Failure> {
+        let log = read_log(self.log)?;
+        if let Some(missing) = &log.cut_off {
+            eprintln!("note: {missing}");
+        }
+        let summary = match self.is_part {
+            true => Map::new(),
+            false => summary_beside(self.log)?,
+        };
+        if summary.is_empty() {
+            let reason = match self.is_part {
+                true => "a part of the run is shown, and they belong to all of it",
+                false => "there is no summary.json beside the log",
+            };
+            eprintln!("note: the report has no figures: {reason}");
+        }
+        let log = part_of(log, self.selection);
+        if log.series.is_empty() {
+            let words = self.selection.words();
+            return Err(Failure::Input(format!("--report: there is no recording {words}")));
+        }
+        write_file(file, &render(&log, &summary), self.force, "--report").map_err(Failure::from)
+    }
+}
+
+/// The recordings of `log` that `selection` picks, with their frames and profiles.
+fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
+    let mut picker = selection.picker();
+    log.frames.retain(|frame| picker.takes(frame.time));
+    let mut picker = selection.picker();
+    let kept: Vec<bool> = log.series.iter().map(|row| picker.takes(row[0])).collect();
+    let mut hashes = kept.iter();
+    log.state_hashes.retain(|_| hashes.next().is_some_and(|&kept| kept));
+    let frames = std::mem::take(&mut log.frames);
+    let (metadata, scenario, walls) = (log.metadata.clone(), log.scenario.clone(), log.walls.clone());
+    let (state_hashes, cut_off) = (std::mem::take(&mut log.state_hashes), log.cut_off.clone());
+    let tables = tables_of(log, selection);
+    RunLog {
+        metadata,
+        scenario,
+        columns: tables.columns,
+        series: tables.series,
+        state_hashes,
+        profiles: tables.profiles,
+        frames,
+        walls,
+        cut_off,
+    }
+}
+
+/// The summary of the run, where it stands beside the log.
+fn summary_beside(log: &Path) -> Result<Map<String, Value>, Failure> {
+    let path = log.with_file_name("summary.json");
+    if !path.is_file() {
+        return Ok(Map::new());
+    }
+    let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
+    let read = text.and_then(|text| serde_json::from_str(&text).map_err(|error| error.to_string()));
+    read.map_err(|reason| {
+        Failure::Input(format!("{}: {reason}; take it away, and the report has no figures", path.display()))
+    })
+}

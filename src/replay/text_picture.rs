@@ -1,0 +1,165 @@
+//! The density of the grains, drawn with characters of a terminal.
+//!
+//! With colours a character shows two fields above each other (`▀`), each in the colour of its volume fraction; without
+//! them eight dots (braille), each dark where there is a grain.
+
+use crate::record::contents::{Frame, Walls};
+use crate::report::field_colour;
+
+/// A part of the plane that is drawn: seen along z in 2D, along y in 3D.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Canvas {
+    /// Characters in a line, at most.
+    pub columns: usize,
+    /// Lines, at most.
+    pub lines: usize,
+    /// Whether colours may be used.
+    pub is_coloured: bool,
+    /// Lower and upper ends of what is shown, across and up [length].
+    window: [[f64; 2]; 2],
+    /// The axis that points up.
+    up: usize,
+}
+
+/// Back to the terminal's own colours.
+const PLAIN: &str = "\x1b[0m";
+
+impl Canvas {
+    /// A view of the box `walls` in at most `columns` characters and `lines`.
+    pub fn new(walls: &Walls, columns: usize, lines: usize, is_coloured: bool) -> Self {
+        let up = if walls.sides[2][0].is_empty() { 1 } else { 2 };
+        let window = [0, up].map(|axis| [walls.lower[axis], walls.upper[axis]]);
+        let [width, height] = window.map(|ends| ends[1] - ends[0]);
+        // Half a line is as high as a character is wide.
+        let (columns, halves) = (columns.max(1) as f64, 2.0 * lines.max(1) as f64);
+        let scale = (columns / width).min(halves / height);
+        Canvas {
+            columns: (width * scale).round().clamp(1.0, columns) as usize,
+            lines: (0.5 * height * scale).ceil().clamp(1.0, 0.5 * halves) as usize,
+            is_coloured,
+            window,
+            up,
+        }
+    }
+
+    /// `frame` as lines of text, the upper one first. `diameter` [length] makes fractions of counts.
+    pub fn draw(&self, frame: &Frame, diameter: f64) -> Vec<String> {
+        if self.is_coloured { self.blocks(frame, diameter) } else { self.dots(frame) }
+    }
+
+    /// Grains in each of `fine` fields, `[row][column]`, the upper row first.
+    fn counts(&self, frame: &Frame, fine: [usize; 2]) -> Vec<Vec<u32>> {
+        let mut counts = vec![vec![0; fine[0]]; fine[1]];
+        for position in &frame.positions {
+            let share = |along: usize, axis: usize| {
+                let [lower, upper] = self.window[along];
+                (f64::from(position[axis]) - lower) / (upper - lower)
+            };
+            let [across, up] = [share(0, 0), share(1, self.up)];
+            if (0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&up) {
+                let column = ((across * fine[0] as f64) as usize).min(fine[0] - 1);
+                let row = (((1.0 - up) * fine[1] as f64) as usize).min(fine[1] - 1);
+                counts[row][column] += 1;
+            }
+        }
+        counts
+    }
+
+    /// Two fields in a character, coloured by the share of the plane that their grains cover.
+    fn blocks(&self, frame: &Frame, diameter: f64) -> Vec<String> {
+        let fine = [self.columns, 2 * self.lines];
+        let counts = self.counts(frame, fine);
+        let area: f64 =
+            self.window.iter().zip(fine).map(|(ends, fields)| (ends[1] - ends[0]) / fields as f64).product();
+        let stands_for = frame.grains as f64 / frame.positions.len().max(1) as f64;
+        let covers = stands_for * std::f64::consts::FRAC_PI_4 * diameter * diameter / area;
+        let mut lines = Vec::with_capacity(self.lines);
+        for pair in counts.chunks_exact(2) {
+            let mut line = String::new();
+            let mut last = None;
+            for (&above, &below) in pair[0].iter().zip(&pair[1]) {
+                let colours = [above, below].map(|count| field_colour(self.share(f64::from(count) * covers)));
+                if last != Some(colours) {
+                    let [[r, g, b], [red, green, blue]] = colours;
+                    line += &format!("\x1b[38;2;{r};{g};{b}m\x1b[48;2;{red};{green};{blue}m");
+                    last = Some(colours);
+                }
+                line.push('▀');
+            }
+            lines.push(line + PLAIN);
+        }
+        lines
+    }
+
+    /// The share of a field that is covered: `covers` in a plane; in space, where grains stand behind each other, as much as
+    /// those that stand anywhere leave uncovered.
+    fn share(&self, covers: f64) -> f64 {
+        if self.up == 1 { covers } else { 1.0 - (-covers).exp() }
+    }
+
+    /// Eight dots in a character.
+    fn dots(&self, frame: &Frame) -> Vec<String> {
+        // Bits of the dots of a braille character, by row and column.
+        const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+        let counts = self.counts(frame, [2 * self.columns, 4 * self.lines]);
+        let character = |rows: &[Vec<u32>], column: usize| {
+            let mut bits = 0;
+            for (row, bit) in rows.iter().zip(BITS) {
+                for side in 0..2 {
+                    bits |= if row[2 * column + side] > 0 { bit[side] } else { 0 };
+                }
+            }
+            char::from_u32(0x2800 + bits).expect("braille has all of these characters")
+        };
+        counts
+            .chunks_exact(4)
+            .map(|rows| (0..self.columns).map(|column| character(rows, column)).collect())
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walls(width: f64, height: f64) -> Walls {
+        let side = || ["wall", "wall"].map(str::to_owned);
+        Walls { lower: [0.0; 3], upper: [width, height, 0.0], sides: [side(), side(), Default::default()] }
+    }
+
+    fn frame(positions: &[[f32; 3]]) -> Frame {
+        Frame { grains: positions.len() as u64, positions: positions.to_vec(), ..Frame::default() }
+    }
+
+    #[test]
+    fn the_picture_fits_and_keeps_the_shape_of_the_box() {
+        let size = |width, height| {
+            let canvas = Canvas::new(&walls(width, height), 80, 20, false);
+            (canvas.columns, canvas.lines)
+        };
+        assert_eq!(size(40.0, 20.0), (80, 20));
+        assert_eq!(size(400.0, 20.0), (80, 2));
+        assert_eq!(size(10.0, 40.0), (10, 20));
+    }
+
+    #[test]
+    fn dots_stand_where_grains_are() {
+        let canvas = Canvas::new(&walls(4.0, 4.0), 2, 1, false);
+        assert_eq!((canvas.columns, canvas.lines), (2, 1));
+        let low_left = frame(&[[0.1, 0.1, 0.0]]);
+        assert_eq!(canvas.draw(&low_left, 1.0), ["\u{2840}\u{2800}"]);
+        let high_right = frame(&[[3.9, 3.9, 0.0], [9.0, 1.0, 0.0]]);
+        assert_eq!(canvas.draw(&high_right, 1.0), ["\u{2800}\u{2808}"]);
+    }
+
+    #[test]
+    fn colours_tell_the_share_that_is_covered() {
+        let canvas = Canvas::new(&walls(2.0, 2.0), 2, 1, true);
+        let lines = canvas.draw(&frame(&[[0.5, 1.5, 0.0]]), 1.0);
+        let colour = |share: f64| field_colour(share).map(|part| part.to_string()).join(";");
+        let full = colour(std::f64::consts::FRAC_PI_4);
+        assert!(lines[0].starts_with(&format!("\x1b[38;2;{full}m\x1b[48;2;{}m▀", colour(0.0))), "{lines:?}");
+        assert_eq!(lines[0].matches('▀').count(), 2);
+        assert!(lines[0].ends_with(PLAIN));
+    }
+}

@@ -1,0 +1,189 @@
+//! Logs that were written when their format was new: they are read for ever, and while the format and the bits of
+//! trajectories stay, the program still writes the same.
+//!
+//! They are made by `cargo test --release --test stored_runs -- --ignored mint`, which leaves those alone that are there;
+//! with `GRAINFLOW_MINT=replace` it writes all of the present format again, as a raised `numerics` asks for.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use glam::{DVec2, DVec3};
+use grainflow::observe::measure::Profile;
+use grainflow::record::contents::RunLog;
+use grainflow::record::reader::{read_log, read_states};
+use grainflow::record::state::SavedState;
+use grainflow::run::{NUMERICS, run};
+use grainflow::scenario::model::EngineKind;
+use grainflow::scenario::{Overrides, parse};
+use grainflow::space::Vector;
+
+/// The newest format; a new one gets a folder of its own, and this one stays.
+const FORMAT: &str = "1";
+/// The longest that a golden log may be [bytes].
+const MOST_BYTES: u64 = 20_000;
+/// When its run is stopped [time]: long before its limit, so that measures have taken few samples.
+const END: f64 = 0.5;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("format-{FORMAT}"))
+}
+
+fn place(engine: EngineKind, dimension: usize) -> PathBuf {
+    folder().join(format!("{}-{dimension}d.mcap", engine.name()))
+}
+
+fn all() -> impl Iterator<Item = (EngineKind, usize)> {
+    EngineKind::ALL.into_iter().flat_map(|engine| [2, 3].map(|dimension| (engine, dimension)))
+}
+
+/// A few grains that fall and are poured between walls: as many kinds of messages as there are.
+fn scenario(engine: EngineKind, dimension: usize) -> String {
+    let list = |first: f64, last: f64| {
+        let numbers = (0..dimension).map(|axis| if axis + 1 == dimension { last } else { first });
+        format!("{:?}", numbers.collect::<Vec<f64>>())
+    };
+    let up = ["y", "z"][dimension - 2];
+    let side = if dimension == 2 { "x = \"periodic\"\n" } else { "x = \"periodic\"\ny = \"periodic\"\n" };
+    let place = if dimension == 2 { "[8.0]" } else { "[4.0, 4.0]" };
+    format!(
+        "title = \"Golden\"\ndimension = {dimension}\nseed = 11\ngravity = {}\n\
+         [engine]\nkind = \"{}\"\ncell_size = 2.0\ntime_step = {{ fixed = 0.0625 }}\n[domain]\nsize = {}\n\
+         [boundary]\n{side}{up}.lower = {{ wall = \"rough\" }}\n{up}.upper = \"open\"\n\
+         [particles]\ncount = 12\nrestitution = 0.9\n[initial]\nvelocities = {{ maxwell = 1.0 }}\n\
+         [source]\ncount = 3\nrate = 8.0\nposition = {place}\nwidth = 4.0\nheight = 4.0\nvelocity = {}\n\
+         [run]\ntime = 10.0\n[record]\nevery = 0.25\nstates = 0\nmeasures = [\"energy\", \"density-profile\"]\n",
+        list(0.0, -1.0),
+        engine.name(),
+        list(if dimension == 2 { 16.0 } else { 8.0 }, 30.0),
+        list(0.0, -1.0),
+    )
+}
+
+/// Writes the log of that scenario to `log` as the program does now.
+fn write(engine: EngineKind, dimension: usize, log: &Path) {
+    let overrides = Overrides::default();
+    let text = scenario(engine, dimension);
+    let parsed = parse("golden", &text, &overrides).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let work = tempfile::tempdir().unwrap();
+    let run_folder = work.path().join("run");
+    let stop = AtomicBool::new(false);
+    run(&parsed, &run_folder, false, &stop, &mut |status| stop.store(status.time >= END, Relaxed)).unwrap();
+    fs::copy(run_folder.join("log.mcap"), log).unwrap();
+}
+
+#[test]
+#[ignore = "makes files; cargo test --release --test stored_runs -- --ignored mint"]
+fn mint_golden_logs() {
+    let replaces = std::env::var("GRAINFLOW_MINT").is_ok_and(|word| word == "replace");
+    fs::create_dir_all(folder()).unwrap();
+    for (engine, dimension) in all() {
+        let log = place(engine, dimension);
+        if replaces || !log.exists() {
+            write(engine, dimension, &log);
+        }
+    }
+}
+
+#[test]
+fn every_engine_has_its_golden_logs_and_they_are_small() {
+    for (engine, dimension) in all() {
+        let log = place(engine, dimension);
+        let remedy = "cargo test --release --test stored_runs -- --ignored mint";
+        assert!(log.is_file(), "{} is missing: {remedy}", log.display());
+        let bytes = fs::metadata(&log).unwrap().len();
+        assert!(bytes <= MOST_BYTES, "{}: {bytes} bytes", log.display());
+    }
+}
+
+#[test]
+fn logs_of_every_format_are_read() {
+    let mut read = 0;
+    for format in fs::read_dir(folder().parent().unwrap()).unwrap() {
+        for log in fs::read_dir(format.unwrap().path()).unwrap() {
+            let log = log.unwrap().path();
+            let contents = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
+            assert!(contents.cut_off.is_none() && contents.series.len() > 2, "{}", log.display());
+            let states = match contents.metadata["dimension"].as_str() {
+                "2" => read_states::<DVec2>(&log).unwrap().len(),
+                _ => read_states::<DVec3>(&log).unwrap().len(),
+            };
+            assert!(states > 0, "{}", log.display());
+            read += 1;
+        }
+    }
+    assert!(read >= all().count());
+}
+
+#[test]
+fn the_present_program_writes_what_the_golden_logs_hold() {
+    let work = tempfile::tempdir().unwrap();
+    for (engine, dimension) in all() {
+        let (golden, now) = (place(engine, dimension), work.path().join("log.mcap"));
+        write(engine, dimension, &now);
+        compare_logs(&golden, &read_log(&golden).unwrap(), &read_log(&now).unwrap());
+        match dimension {
+            2 => compare_states::<DVec2>(&golden, &now),
+            _ => compare_states::<DVec3>(&golden, &now),
+        }
+    }
+}
+
+/// Whatever the golden log holds has to be there now; what is new beside it may be.
+fn compare_logs(path: &Path, golden: &RunLog, now: &RunLog) {
+    let name = path.display();
+    for (key, value) in golden.metadata.iter().filter(|(key, _)| *key != "version") {
+        let hint = "if trajectories were meant to change: GRAINFLOW_MINT=replace cargo test --release --test \
+                    stored_runs -- --ignored mint";
+        assert_eq!(now.metadata.get(key), Some(value), "{name}: {key}; numerics {NUMERICS}; {hint}");
+    }
+    assert_eq!((&golden.scenario, &golden.walls), (&now.scenario, &now.walls), "{name}");
+    assert_eq!(golden.state_hashes, now.state_hashes, "{name}: states at recordings");
+    assert_eq!(golden.frames, now.frames, "{name}: frames");
+    assert!(golden.frames.len() > 2 && golden.cut_off.is_none(), "{name}");
+    for (index, column) in golden.columns.iter().enumerate() {
+        let place = now.columns.iter().position(|one| one == column);
+        let place = place.unwrap_or_else(|| panic!("{name}: no column {column:?}"));
+        let bits = |log: &RunLog, place: usize| -> Vec<u64> {
+            log.series.iter().map(|row| row[place].to_bits()).collect()
+        };
+        assert_eq!(bits(golden, index), bits(now, place), "{name}: {}", column.name);
+    }
+    let of_now: BTreeMap<(&str, u64), &Profile> = now.profiles.iter().map(|one| (key(one), one)).collect();
+    for profile in &golden.profiles {
+        let found = of_now.get(&key(profile)).unwrap_or_else(|| panic!("{name}: no {}", profile.name));
+        for (column, values) in profile.columns.iter().zip(&profile.values) {
+            let place = found.columns.iter().position(|one| one == column).unwrap();
+            let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+            assert_eq!(bits(values), bits(&found.values[place]), "{name}: {}.{}", profile.name, column.name);
+        }
+    }
+    assert!(!golden.profiles.is_empty(), "{name}");
+}
+
+fn key(profile: &Profile) -> (&str, u64) {
+    (&profile.name, profile.time.to_bits())
+}
+
+fn compare_states<V: Vector>(golden: &Path, now: &Path) {
+    let [of_golden, of_now] = [golden, now].map(|path| read_states::<V>(path).unwrap());
+    assert_eq!(of_golden.len(), of_now.len(), "{}: states", golden.display());
+    assert!(!of_golden.is_empty());
+    for (then, now) in of_golden.into_iter().zip(of_now) {
+        for (name, memory) in &then.memories {
+            let found = now.memories.iter().find(|one| one.0 == *name);
+            // As text, so that what is no number equals itself.
+            assert_eq!(
+                found.map(|one| format!("{:?}", one.1)),
+                Some(format!("{memory:?}")),
+                "{}: memory of {name}",
+                golden.display()
+            );
+        }
+        // Measures that are new have samples and memories of their own.
+        let bare =
+            |state: SavedState<'static, V>| SavedState { samples: Vec::new(), memories: Vec::new(), ..state };
+        assert_eq!(format!("{:?}", bare(then)), format!("{:?}", bare(now)), "{}", golden.display());
+    }
+}
