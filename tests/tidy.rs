@@ -13,7 +13,7 @@ const FLOORS: [(&str, &[&str]); 8] = [
     ("laws", &["law"]),
     ("engines", &["engine"]),
     ("observation", &["observe", "record"]),
-    ("runs", &["comparison", "report", "run", "scenario", "simulation", "stopwatch"]),
+    ("runs", &["comparison", "report", "run", "scenario", "simulation", "stopwatch", "view"]),
     ("campaigns", &["campaign"]),
     ("command line", &["cli"]),
 ];

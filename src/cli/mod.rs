@@ -10,6 +10,7 @@ mod progress;
 mod run;
 mod scenarios;
 mod sweep;
+mod view;
 
 use std::process::ExitCode;
 
@@ -45,6 +46,7 @@ const EXAMPLES: &str = "Examples:
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow compare cooling --engines hsmc,event-driven    the same grains through both
+  grainflow view out/heap-hsmc                   what happened, in the browser
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
@@ -58,6 +60,7 @@ enum Command {
     Compare(compare::CompareArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
+    View(view::ViewArguments),
 }
 
 /// Reads the command line and does what it says.
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
+        Command::View(arguments) => view::view(&arguments),
     };
     ExitCode::from(exit as u8)
 }

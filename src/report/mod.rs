@@ -2,11 +2,11 @@
 
 mod axis;
 pub mod calibration;
-mod colour;
+pub(crate) mod colour;
 mod comparison;
 mod curve;
 mod energy_plots;
-mod escape;
+pub(crate) mod escape;
 mod evidence;
 mod figures;
 mod fit;
@@ -21,8 +21,8 @@ mod player;
 mod plot;
 mod raster;
 mod reference;
-mod scene;
-mod setup;
+pub(crate) mod scene;
+pub(crate) mod setup;
 mod shear_plots;
 mod sweep;
 mod sweep_model;
