@@ -51,9 +51,7 @@ pub fn export(logs: &[ViewedLog], path: &Path, force: bool) -> Result<Vec<Export
         let mut about = log.about(&pack.numbers);
         about["row_step"] = pack.row_step.into();
         about["embedded_rows"] = pack.rows.into();
-        if let Some(notes) = about["notes"].as_array_mut() {
-            notes.push(pack.exported.sentence().into());
-        }
+        about["remarks"] = json!([pack.exported.sentence()]);
         parts.push(about);
         packs.push(pack.bytes);
         kept.push(pack.exported);

@@ -24,6 +24,8 @@ pub struct ViewedLog {
     index: LogIndex,
     setup: Setup,
     scene: Scene,
+    /// Whether the speeds of one frame and another differ so much that one scale does not do.
+    speeds_vary: bool,
     /// Species by identity, where grains are not alike.
     species: Vec<(u32, u8)>,
     /// Diameters of the species [length].
@@ -42,7 +44,10 @@ impl ViewedLog {
         let setup = Setup::of(head, &Map::new());
         let samples = samples(&index)?;
         let frames: Vec<&Frame> = samples.iter().collect();
-        let scene = Scene::of(&frames, head.walls.as_ref(), setup.diameter, true);
+        let scene = Scene::of(&frames, head.walls.as_ref(), setup.diameter, false);
+        let filled: Vec<&Frame> = samples.iter().filter(|frame| !frame.positions.is_empty()).collect();
+        let each = Scene::of(&filled, None, setup.diameter, true).speeds;
+        let speeds_vary = each.windows(2).any(|pair| pair[0] != pair[1]);
         let sizes = species_diameters(&head.scenario);
         let species = if sizes.len() > 1 { index.species()? } else { Vec::new() };
         let share = |frame: &&&Frame| frame.positions.len() as f64 / frame.grains.max(1) as f64;
@@ -51,7 +56,7 @@ impl ViewedLog {
         let thinnest = thinnest.map(|frame| (frame.positions.len(), frame.grains));
         let most_points = frames.iter().map(|frame| frame.positions.len()).max().unwrap_or(0);
         let name = path.display().to_string();
-        Ok(ViewedLog { name, setup, scene, species, sizes, thinnest, most_points, index })
+        Ok(ViewedLog { name, setup, scene, speeds_vary, species, sizes, thinnest, most_points, index })
     }
 
     /// Random access to what it holds.
@@ -108,15 +113,13 @@ impl ViewedLog {
             .iter()
             .map(|column| json!({ "name": column.name, "label": self.setup.label(column) }))
             .collect();
-        let speeds = &self.scene.speeds;
-        let most = speeds.iter().copied().fold(0.0, f64::max);
-        let least = speeds.iter().copied().fold(f64::INFINITY, f64::min);
         let speed = Dimension { length: 1, time: -1, ..Dimension::default() };
         json!({
             "name": self.name,
             "title": self.setup.title,
             "engine": self.setup.engine,
             "notes": self.notes(),
+            "remarks": [],
             "times": frames.iter().map(|&frame| self.index.frame_time(frame)).collect::<Vec<_>>(),
             "recordings": frames.iter().map(|&frame| self.index.recording_of(frame)).collect::<Vec<_>>(),
             "rows": self.index.recordings(),
@@ -126,8 +129,8 @@ impl ViewedLog {
             "deep": self.scene.is_deep,
             "turned": self.scene.is_turned,
             "diameter": self.setup.diameter,
-            "fastest": if most > 0.0 { most } else { 1.0 },
-            "own_scale": !self.setup.has_gravity() && most > 3.0 * least,
+            "fastest": self.scene.speeds.first().copied().unwrap_or(1.0),
+            "own_scale": !self.setup.has_gravity() && self.speeds_vary,
             "units": {
                 "time": if self.setup.units[2] == "time" { "" } else { &self.setup.units[2] },
                 "length": if self.setup.units[0] == "length" { "" } else { &self.setup.units[0] },

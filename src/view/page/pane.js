@@ -32,7 +32,7 @@ function makePane(parent, log, index, count, player) {
     }
     const fixed = colour === "speed" ? log.fastest : 1;
     const end = player.ownScale() ? quantile(values) || fixed : fixed;
-    const label = colour === "speed" ? log.units.speed : `volume fraction in cells of side ${number(frame.detail, 2)}${log.units.length ? "\u202f" + log.units.length : ""}`;
+    const label = colour === "speed" ? log.units.speed : `volume fraction, over cells of side ${number(frame.detail, 2)}${log.units.length ? "\u202f" + log.units.length : ""}`;
     return { values, range: [0, end], logarithmic: false, map: player.map(colour === "speed" ? "speed" : "field"), label };
   }
 

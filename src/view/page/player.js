@@ -51,13 +51,15 @@ function makePlayer(source, about) {
   }
 
   async function arrange() {
-    const before = own.stations.length ? own.stations[own.at].frames[0] : 0;
+    // A log is opened at its end, as a report is; later the first log stays where it is.
+    const before = own.stations.length ? own.stations[own.at].frames[0] : Infinity;
     const isTime = byId("step").value === "time";
     own.stations = stationsOf(isTime ? logs.map((log) => log.times) : await Promise.all(logs.map(collisionsAtFrames)));
     const scrub = byId("scrub");
     scrub.max = String(Math.max(0, own.stations.length - 1));
     scrub.disabled = own.stations.length < 2;
-    show(Math.max(0, own.stations.findIndex((station) => station.frames[0] >= before)));
+    const same = own.stations.findIndex((station) => station.frames[0] >= before);
+    show(same < 0 ? own.stations.length - 1 : same);
     drawPlots();
   }
 
@@ -247,6 +249,7 @@ function makePlayer(source, about) {
     own.panes = logs.map((log, index) => makePane(byId("stages"), log, index, logs.length, api));
     const notes = logs.flatMap((log) => log.notes).concat(chooseColours());
     if (!own.panes.every((pane) => pane.isFast)) notes.push("This browser gives no WebGL2: grains are drawn by a plain canvas, which is slow beyond some thousands.");
+    logs.flatMap((log) => log.remarks).forEach((text) => element("p", byId("notes"), { className: "hint", textContent: text }));
     for (const note of notes) element("p", byId("notes"), { className: "warning", textContent: note });
     const haveCollisions = logs.every((log) => log.columns.some((column) => column.name === "collisions_per_particle"));
     byId("step-label").hidden = logs.length < 2 || !haveCollisions;

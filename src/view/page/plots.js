@@ -40,7 +40,7 @@ function decades(lower, upper) {
 function makePlot(parent, name, label, player) {
   const figure = element("figure", parent, { className: "plot" });
   const head = element("h3", figure, {});
-  element("span", head, { textContent: label });
+  element("span", head, { textContent: label, title: label });
   const value = element("output", head, {});
   const canvas = element("canvas", figure, { tabIndex: 0 });
   canvas.setAttribute("role", "img");
@@ -87,7 +87,7 @@ function makePlot(parent, name, label, player) {
       pen.fillText(number(player.isLogarithmic() ? 10 ** y : Math.abs(y) < 1e-9 * (upper - lower) ? 0 : y, 3), margin.left - 7, up(y));
     }
     pen.textBaseline = "top";
-    for (const x of ticks(first, last, Math.max(2, width / 110))) {
+    for (const x of ticks(first, last, Math.max(2, width / 80))) {
       pen.textAlign = across(x) > width - 30 ? "right" : "center";
       pen.fillText(number(Math.abs(x) < 1e-9 * (last - first) ? 0 : x, 4), Math.min(across(x), width - 2), height - margin.bottom + 7);
     }
@@ -135,7 +135,7 @@ function makePlot(parent, name, label, player) {
         pen.arc(across(row[player.abscissa(index)]), up(y), 3.5, 0, 7);
         pen.fill();
       }
-      return number(row[column], 5);
+      return number(row[column], player.logs.length > 1 ? 4 : 5);
     });
     value.textContent = values.join(" · ");
     canvas.setAttribute("aria-label", `${label} against ${player.abscissaName()}; now ${values.join(" and ")}`);
