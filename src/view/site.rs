@@ -10,7 +10,6 @@ use super::page;
 use super::request::Request;
 use super::response::Response;
 use crate::record::error::LogError;
-use crate::report::escape::escape_json;
 use crate::stopwatch::Stopwatch;
 
 /// Rows of a series in one answer.
@@ -99,5 +98,5 @@ impl Site {
 
 /// The log is not what it was when it was opened.
 fn failure(error: &LogError) -> Response {
-    Response::refusal(500, &escape_json(&error.to_string()))
+    Response::refusal(500, &error.to_string())
 }

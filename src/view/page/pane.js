@@ -45,9 +45,8 @@ function makePane(parent, log, index, count, player) {
     if (!frame) return;
     const own = colours();
     painter({ frame, log, eye, ratio, ...own });
-    const most_ = own.logarithmic ? Math.exp(own.range[1]) : own.range[1];
     least.textContent = own.logarithmic ? "1" : "0";
-    most.textContent = number(most_, 3);
+    most.textContent = number(own.logarithmic ? Math.exp(own.range[1]) : own.range[1], 3);
     unit.textContent = own.label;
     bar.style.background = `linear-gradient(to right, ${own.map.filter((_, k) => k % 9 === 0).join(", ")})`;
   }
@@ -63,7 +62,7 @@ function makePane(parent, log, index, count, player) {
     draw();
   }
 
-  listen(stage, player, log, () => grains);
+  listen(stage, player, log);
   new ResizeObserver(draw).observe(stage);
   return {
     draw, show, stage, frame: () => frame, isFast: painter.isFast,
@@ -88,13 +87,13 @@ function quantile(values) {
   return some.length ? some[Math.floor((some.length - 1) * 0.98)] : 0;
 }
 
-// Drag, wheel and pinch-free touch: turn a deep box, move a flat one, zoom both.
-function listen(stage, player, log, canvas) {
+// Dragging turns a deep box and moves a flat one; the wheel zooms both.
+function listen(stage, player, log) {
   stage.addEventListener("pointerdown", (event) => { stage.setPointerCapture(event.pointerId); });
   stage.addEventListener("pointermove", (event) => {
     if (event.buttons === 0) return;
     if (log.deep && event.buttons === 1 && !event.shiftKey) player.turn(0.008 * event.movementX, 0.008 * event.movementY);
-    else player.move(event.movementX / canvas().clientWidth, event.movementY / canvas().clientHeight);
+    else player.move(event.movementX / stage.clientWidth, event.movementY / stage.clientHeight);
   });
   stage.addEventListener("wheel", (event) => {
     event.preventDefault();
