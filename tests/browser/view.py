@@ -78,11 +78,11 @@ def check_time(browser, panes):
     require(last > 3, f"{last + 1} frames are too few to try the page")
     final = [until(browser, GRAINS, lambda one: one["drawn"] > 50, f"pane {pane} shows no grains", pane) for pane in range(panes)]
     require(browser.run(VALUE) == last, "the last frame is not shown first")
-    plots = until(browser, PLOTS, lambda all: len(all) > 0 and all("NaN" not in one for one in all), "there are no plots")
+    plots = until(browser, PLOTS, lambda each: len(each) > 0 and "–" not in each[0], "there are no plots")
     browser.run(SCRUB, str(last // 2))
     for pane in range(panes):
         until(browser, GRAINS, lambda one: one["sum"] != final[pane]["sum"] and one["drawn"] > 50, "the scrubber moves no grains", pane)
-    until(browser, PLOTS, lambda all: all(a != b for a, b in zip(all, plots)), "the plots do not follow")
+    until(browser, PLOTS, lambda each: all(a != b for a, b in zip(each, plots)), "the plots do not follow")
     browser.run(KEY, "End")
     for pane in range(panes):
         until(browser, GRAINS, lambda one: one["sum"] == final[pane]["sum"], "the same frame is drawn differently", pane)
