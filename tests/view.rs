@@ -561,13 +561,18 @@ fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
         let picture = frame(time, &columns, None);
         let row = [time, random(), time];
         let hash = format!("{index:064x}");
-        log.recording(&Recording { values: &row, state_hash: &hash, profiles: &[], frame: &picture }).unwrap();
+        log.recording(&Recording { values: &row, state_hash: &hash, profiles: &[], frame: &picture })
+            .unwrap();
     }
     log.finish().unwrap();
     let length = fs::metadata(&path).unwrap().len();
     let begun = Instant::now();
     let log = ViewedLog::open(&path).unwrap();
-    println!("{:.2} GB, {recordings} frames: opened in {:.3} s", length as f64 * 1e-9, begun.elapsed().as_secs_f64());
+    println!(
+        "{:.2} GB, {recordings} frames: opened in {:.3} s",
+        length as f64 * 1e-9,
+        begun.elapsed().as_secs_f64()
+    );
     let site = Site::new(vec![log], PORT).unwrap();
     let token = site.address().split_once("token=").unwrap().1.to_owned();
     let mut longest = Duration::ZERO;

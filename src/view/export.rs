@@ -51,7 +51,8 @@ pub fn export(logs: &[ViewedLog], path: &Path, force: bool) -> Result<Vec<Export
         let mut about = log.about(&pack.numbers);
         about["row_step"] = pack.row_step.into();
         about["embedded_rows"] = pack.rows.into();
-        about["remarks"] = json!([pack.exported.sentence()]);
+        let name = if logs.len() > 1 { format!("{}: ", log.name()) } else { String::new() };
+        about["remarks"] = json!([name + &pack.exported.sentence()]);
         parts.push(about);
         packs.push(pack.bytes);
         kept.push(pack.exported);

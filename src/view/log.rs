@@ -64,6 +64,11 @@ impl ViewedLog {
         &self.index
     }
 
+    /// Where it is.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     pub(super) fn title(&self) -> &str {
         &self.setup.title
     }

@@ -187,6 +187,8 @@ function makePlayer(source, about) {
   }
 
   function drawPlots() {
+    const unit = abscissaColumn() === "time" && logs[0].units.time ? ` [${logs[0].units.time}]` : "";
+    byId("measures").textContent = `Measures against ${api.abscissaName()}${unit}`;
     own.plots.forEach((plot) => plot.draw());
     const steps = logs.map((log, k) => Math.max(log.row_step || 1, collected.series[k].step));
     const isReading = collected.series.some((series) => !series.isWhole);

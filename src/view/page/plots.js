@@ -40,7 +40,7 @@ function decades(lower, upper) {
 function makePlot(parent, name, label, player) {
   const figure = element("figure", parent, { className: "plot" });
   const head = element("h3", figure, {});
-  element("span", head, { textContent: label, title: label });
+  element("span", head, { textContent: label });
   const value = element("output", head, {});
   const canvas = element("canvas", figure, { tabIndex: 0 });
   canvas.setAttribute("role", "img");
