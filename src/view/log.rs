@@ -134,6 +134,7 @@ impl ViewedLog {
             "deep": self.scene.is_deep,
             "turned": self.scene.is_turned,
             "diameter": self.setup.diameter,
+            "gravity": self.setup.gravity,
             "fastest": self.scene.speeds.first().copied().unwrap_or(1.0),
             "own_scale": !self.setup.has_gravity() && self.speeds_vary,
             "units": {

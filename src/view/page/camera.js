@@ -79,6 +79,35 @@ function drawSides(log, eye, under, over, ratio) {
   }
   pens.forEach((pen) => pen.setLineDash([]));
   if (log.deep) drawAxes(eye, pens[1], height);
+  if (log.gravity.some((component) => component !== 0)) drawGravity(log, eye, pens[1], width);
+}
+
+// Which way grains fall.
+function drawGravity(log, eye, pen, width) {
+  const gravity = [0, 1, 2].map((axis) => log.gravity[axis] || 0), strength = Math.hypot(...gravity);
+  const way = [dot(eye.right, gravity) / strength, -dot(eye.up, gravity) / strength];
+  const [x, y] = [width - 30, 32], tip = [x + 15 * way[0], y + 15 * way[1]];
+  pen.font = "italic 14px Georgia, serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  pen.lineCap = "round";
+  // Upon paper, so that it can be told from the grains.
+  for (const [colour, thickness] of [[PAPER, 6], ["#4a463f", 1.8]]) {
+    pen.strokeStyle = pen.fillStyle = colour;
+    pen.lineWidth = thickness;
+    pen.beginPath();
+    pen.moveTo(x - 15 * way[0], y - 15 * way[1]);
+    pen.lineTo(...tip);
+    for (const turn of [2.6, -2.6]) {
+      pen.moveTo(...tip);
+      pen.lineTo(tip[0] + 7 * (way[0] * Math.cos(turn) - way[1] * Math.sin(turn)), tip[1] + 7 * (way[0] * Math.sin(turn) + way[1] * Math.cos(turn)));
+    }
+    pen.stroke();
+    pen.lineWidth = 4;
+    if (colour === PAPER) pen.strokeText("g", x + 12 * Math.abs(way[1]), y + 12 * Math.abs(way[0]));
+    else pen.fillText("g", x + 12 * Math.abs(way[1]), y + 12 * Math.abs(way[0]));
+  }
+  pen.lineCap = "butt";
 }
 
 // Which way x, y and z go.

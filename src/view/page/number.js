@@ -29,3 +29,16 @@ function fitCanvas(canvas) {
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
   return ratio;
 }
+
+// `work`, once before the next picture however often it is asked for.
+function oncePerPicture(work) {
+  let isDue = false;
+  return () => {
+    if (isDue) return;
+    isDue = true;
+    requestAnimationFrame(() => {
+      isDue = false;
+      work();
+    });
+  };
+}

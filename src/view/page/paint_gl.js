@@ -1,11 +1,16 @@
-// Grains by WebGL: a square for each, cut to a disk or a ball of true diameter.
+// Grains by WebGL: a square for each, cut to a disk or a ball of true diameter. What is known of them stands in textures, from
+// which each corner takes its own: one call draws all, which is as fast by software as it can be.
 const LEAST_RADIUS = 0.9; // smaller grains could not be seen [pixel]
 
+const ROW = 1024; // grains in a row of a texture
+
 const VERTEX = `#version 300 es
-layout(location = 0) in vec2 corner;
-layout(location = 1) in vec3 place;
-layout(location = 2) in float value;
-layout(location = 3) in float diameter;
+#define ROW ${ROW}
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D grains, diameters;
+uniform bool mixture;
+uniform float usual;
 uniform vec3 centre, right, up, away;
 uniform vec2 size, shift, range;
 uniform float scale, least, depth;
@@ -13,7 +18,12 @@ uniform bool logarithmic;
 out vec2 at;
 out float share, radius, far;
 void main() {
-  vec3 from = place - centre;
+  int number = gl_VertexID / 6, which = gl_VertexID % 6;
+  ivec2 texel = ivec2(number % ROW, number / ROW);
+  vec4 grain = texelFetch(grains, texel, 0);
+  float value = grain.w, diameter = mixture ? texelFetch(diameters, texel, 0).r : usual;
+  vec2 corner = vec2(which == 1 || which == 2 || which == 4 ? 1.0 : -1.0, which == 2 || which == 4 || which == 5 ? 1.0 : -1.0);
+  vec3 from = grain.xyz - centre;
   radius = max(0.5 * diameter * scale, least);
   at = corner * (radius + 1.0);
   vec2 screen = scale * vec2(dot(right, from), dot(up, from)) + vec2(shift.x, -shift.y) + at;
@@ -65,40 +75,42 @@ function glPainter(canvas) {
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return null;
   gl.useProgram(program);
   const at = (name) => gl.getUniformLocation(program, name);
-  const names = ["centre", "right", "up", "away", "size", "shift", "range", "scale", "least", "depth", "logarithmic", "map", "paper", "unknown", "deep"];
+  const names = ["centre", "right", "up", "away", "size", "shift", "range", "scale", "least", "depth", "logarithmic", "map", "paper", "unknown", "deep", "grains", "diameters", "mixture", "usual"];
   const places = Object.fromEntries(names.map((name) => [name, at(name)]));
-  const buffers = [0, 1, 2, 3].map(() => gl.createBuffer());
-  gl.bindBuffer(gl.ARRAY_BUFFER, buffers[0]);
-  gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), gl.STATIC_DRAW);
-  gl.enableVertexAttribArray(0);
-  gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
-  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  const textures = ["grains", "diameters", "map"].map((name, unit) => {
+    gl.uniform1i(places[name], unit);
+    return gl.createTexture();
+  });
   let loaded = null, loadedValues = null, loadedMap = null;
 
-  function attribute(index, data, size) {
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[index]);
-    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-    gl.enableVertexAttribArray(index);
-    gl.vertexAttribPointer(index, size, gl.FLOAT, false, 0, 0);
-    gl.vertexAttribDivisor(index, 1);
+  // Fills a texture of numbers, `each` to a grain.
+  function numbers(unit, each, count, fill) {
+    const rows = Math.max(1, Math.ceil(count / ROW)), data = new Float32Array(each * ROW * rows);
+    fill(data);
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, textures[unit]);
+    gl.texImage2D(gl.TEXTURE_2D, 0, each === 4 ? gl.RGBA32F : gl.R32F, ROW, rows, 0, each === 4 ? gl.RGBA : gl.RED, gl.FLOAT, data);
+    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
   }
 
-  function load(frame, values, diameter, map) {
-    if (loaded !== frame) {
-      attribute(1, frame.places, frame.axes);
-      if (frame.diameters) attribute(3, frame.diameters, 1);
-      else {
-        gl.disableVertexAttribArray(3);
-        gl.vertexAttrib1f(3, diameter);
-      }
-      loaded = frame;
+  function load(frame, values, map) {
+    if (loaded !== frame || loadedValues !== values) {
+      numbers(0, 4, frame.points, (data) => {
+        for (let k = 0; k < frame.points; k++) {
+          for (let axis = 0; axis < frame.axes; axis++) data[4 * k + axis] = frame.places[frame.axes * k + axis];
+          data[4 * k + 3] = values[k];
+        }
+      });
+      numbers(1, 1, frame.diameters ? frame.points : 1, (data) => { if (frame.diameters) data.set(frame.diameters); });
+      [loaded, loadedValues] = [frame, values];
     }
-    if (loadedValues !== values) attribute(2, loadedValues = values, 1);
     if (loadedMap === map) return;
     const texels = new Uint8Array(map.flatMap((colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)).concat(255)));
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, textures[2]);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, map.length, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, texels);
     for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.LINEAR);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    for (const way of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, way, gl.CLAMP_TO_EDGE);
     loadedMap = map;
   }
 
@@ -109,7 +121,7 @@ function glPainter(canvas) {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (!frame || frame.points === 0) return;
-    load(frame, values, log.diameter, map);
+    load(frame, values, map);
     if (log.deep) {
       gl.enable(gl.DEPTH_TEST);
       gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
@@ -128,10 +140,11 @@ function glPainter(canvas) {
     gl.uniform1f(places.depth, eye.depth);
     gl.uniform1i(places.logarithmic, logarithmic ? 1 : 0);
     gl.uniform1i(places.deep, log.deep ? 1 : 0);
-    gl.uniform1i(places.map, 0);
+    gl.uniform1i(places.mixture, frame.diameters ? 1 : 0);
+    gl.uniform1f(places.usual, log.diameter);
     gl.uniform3fv(places.paper, unit(PAPER));
     gl.uniform3fv(places.unknown, unit(UNKNOWN));
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, frame.points);
+    gl.drawArrays(gl.TRIANGLES, 0, 6 * frame.points);
   }
   paint.isFast = true;
   return paint;

@@ -36,7 +36,7 @@ function makePane(parent, log, index, count, player) {
     return { values, range: [0, end], logarithmic: false, map: player.map(colour === "speed" ? "speed" : "field"), label };
   }
 
-  function draw() {
+  const draw = oncePerPicture(() => {
     const ratio = fitCanvas(grains);
     fitCanvas(under);
     fitCanvas(over);
@@ -49,7 +49,7 @@ function makePane(parent, log, index, count, player) {
     most.textContent = number(own.logarithmic ? Math.exp(own.range[1]) : own.range[1], 3);
     unit.textContent = own.label;
     bar.style.background = `linear-gradient(to right, ${own.map.filter((_, k) => k % 9 === 0).join(", ")})`;
-  }
+  });
 
   function show(next, note) {
     frame = next;

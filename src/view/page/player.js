@@ -5,6 +5,16 @@ const AHEAD = 6; // frames asked for before they are due
 function makePlayer(source, about) {
   const logs = about.logs;
   const own = { place: 0, isPlaying: false, at: 0, lastTick: 0, stations: [], panes: [], plots: new Map() };
+  const drawPlots = oncePerPicture(() => {
+    const unit = abscissaColumn() === "time" && logs[0].units.time ? ` [${logs[0].units.time}]` : "";
+    byId("measures").textContent = `Measures against ${api.abscissaName()}${unit}`;
+    own.plots.forEach((plot) => plot.draw());
+    const steps = logs.map((log, k) => Math.max(log.row_step || 1, collected.series[k].step));
+    const isReading = collected.series.some((series) => !series.isWhole);
+    const thinned = Math.max(...steps) > 1 ? `Curves show every ${steps.join(" or ")}th recording; the values at the cursor are those of the frame. ` : "";
+    byId("series-remark").textContent = thinned + (isReading ? "The series is being read …" : "");
+  });
+
   const collected = seriesOf(source, logs, drawPlots);
   const store = frameStore(source, refresh, (log, error) => own.panes[log].say(error.message));
   const api = {
@@ -184,16 +194,6 @@ function makePlayer(source, about) {
     else if (event.key === "0") look(() => Object.assign(view, FIRST_VIEW));
     else return;
     event.preventDefault();
-  }
-
-  function drawPlots() {
-    const unit = abscissaColumn() === "time" && logs[0].units.time ? ` [${logs[0].units.time}]` : "";
-    byId("measures").textContent = `Measures against ${api.abscissaName()}${unit}`;
-    own.plots.forEach((plot) => plot.draw());
-    const steps = logs.map((log, k) => Math.max(log.row_step || 1, collected.series[k].step));
-    const isReading = collected.series.some((series) => !series.isWhole);
-    const thinned = Math.max(...steps) > 1 ? `Curves show every ${steps.join(" or ")}th recording; the values at the cursor are those of the frame. ` : "";
-    byId("series-remark").textContent = thinned + (isReading ? "The series is being read …" : "");
   }
 
   const remark = (text) => { byId("remark").textContent = text; };

@@ -56,7 +56,7 @@ function makePlot(parent, name, label, player) {
     });
   }
 
-  function draw() {
+  const draw = oncePerPicture(() => {
     const ratio = fitCanvas(canvas), width = canvas.width / ratio, height = canvas.height / ratio;
     const pen = canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
     const colour = (which) => style.getPropertyValue(which).trim();
@@ -100,7 +100,7 @@ function makePlot(parent, name, label, player) {
     pen.lineTo(x, height - margin.bottom);
     pen.stroke();
     tell(pen, across, up, colour);
-  }
+  });
 
   function drawCurves(pen, all, across, up, colour) {
     all.forEach((curve, index) => {
