@@ -18,7 +18,7 @@
 //!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
 //! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
-//! ([`scenario`], [`simulation`], [`run`], [`replay`], [`export`], [`comparison`], [`report`]), campaigns of many runs
+//! ([`scenario`], [`simulation`], [`run`], [`replay`], [`export`], [`comparison`], [`report`], [`view`]), campaigns of many runs
 //! ([`campaign`]) and the command line ([`cli`]).
 
 pub mod random;
@@ -42,6 +42,7 @@ pub mod run;
 pub mod scenario;
 pub mod simulation;
 pub mod stopwatch;
+pub mod view;
 
 pub mod campaign;
 

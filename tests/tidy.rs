@@ -13,7 +13,10 @@ const FLOORS: [(&str, &[&str]); 8] = [
     ("laws", &["law"]),
     ("engines", &["engine"]),
     ("observation", &["observe", "record"]),
-    ("runs", &["comparison", "export", "replay", "report", "run", "scenario", "simulation", "stopwatch"]),
+    (
+        "runs",
+        &["comparison", "export", "replay", "report", "run", "scenario", "simulation", "stopwatch", "view"],
+    ),
     ("campaigns", &["campaign"]),
     ("command line", &["cli"]),
 ];

@@ -13,6 +13,7 @@ mod run;
 mod scenarios;
 mod span;
 mod sweep;
+mod view;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,7 @@ const EXAMPLES: &str = "Examples:
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow compare cooling --engines hsmc,event-driven    the same grains through both
+  grainflow view out/heap-hsmc                   what happened, in the browser
   grainflow replay out/heap-hsmc --speed 20      watch it in the terminal
   grainflow export out/heap-hsmc --format vtp    for ParaView
   grainflow scenarios show pipe > mine.toml      a file to start from
@@ -65,6 +67,7 @@ enum Command {
     Export(export::ExportArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
+    View(view::ViewArguments),
 }
 
 /// Reads the command line and does what it says.
@@ -78,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
+        Command::View(arguments) => view::view(&arguments),
     };
     ExitCode::from(exit as u8)
 }

@@ -5,6 +5,7 @@ use super::setting::Setting;
 use super::units::{PURE, column};
 use crate::matter::bins::Bins;
 use crate::matter::gas::Gas;
+use crate::matter::grid::Grid;
 use crate::space::Vector;
 
 mod forest;
@@ -45,19 +46,7 @@ impl Census {
     /// Finds the clusters in time proportional to the number of grains, if no place is overcrowded.
     fn of<V: Vector>(gas: &Gas<V>) -> Self {
         let diameters: Vec<f64> = (0..gas.len()).map(|row| gas.grain_at(row).diameter).collect();
-        let reach = (1.0 + LINK) * diameters.iter().copied().fold(0.0, f64::max);
-        let mut bins = Bins::new(gas.grid(), reach, gas.len());
-        let mut forest = Forest::new(gas.len());
-        for (row, &position) in gas.positions().iter().enumerate() {
-            bins.any_near(position, |other, distance_squared| {
-                let link = (1.0 + LINK) * 0.5 * (diameters[row] + diameters[other]);
-                if distance_squared < link * link {
-                    forest.join(row, other, turns(gas, position, gas.positions()[other]));
-                }
-                false
-            });
-            bins.insert(position);
-        }
+        let forest = linked(gas.grid(), gas.positions(), &diameters);
         Census { sizes: forest.sizes(), percolates: forest.winds() }
     }
 
@@ -95,11 +84,36 @@ impl Census {
     }
 }
 
+/// The size of the cluster that each grain belongs to `[grain]`, of grains at `positions` [length] with `diameters` [length]
+/// in the box of `grid`; links are those of [`Clusters`].
+pub fn cluster_sizes<V: Vector>(grid: &Grid<V>, positions: &[V], diameters: &[f64]) -> Vec<u32> {
+    let mut forest = linked(grid, positions, diameters);
+    (0..positions.len()).map(|grain| forest.size_with(grain)).collect()
+}
+
+/// Joins all grains that are linked.
+fn linked<V: Vector>(grid: &Grid<V>, positions: &[V], diameters: &[f64]) -> Forest {
+    let reach = (1.0 + LINK) * diameters.iter().copied().fold(0.0, f64::max);
+    let mut bins = Bins::new(grid, reach, positions.len());
+    let mut forest = Forest::new(positions.len());
+    for (row, &position) in positions.iter().enumerate() {
+        bins.any_near(position, |other, distance_squared| {
+            let link = (1.0 + LINK) * 0.5 * (diameters[row] + diameters[other]);
+            if distance_squared < link * link {
+                forest.join(row, other, turns(grid, position, positions[other]));
+            }
+            false
+        });
+        bins.insert(position);
+    }
+    forest
+}
+
 /// How many boxes away the image of `b` is that is nearest to `a`, along every axis.
-fn turns<V: Vector>(gas: &Gas<V>, a: V, b: V) -> [i32; 3] {
-    let beyond = gas.grid().separation(a, b) - (b - a);
+fn turns<V: Vector>(grid: &Grid<V>, a: V, b: V) -> [i32; 3] {
+    let beyond = grid.separation(a, b) - (b - a);
     std::array::from_fn(|axis| {
-        if axis < V::DIMENSION { (beyond[axis] / gas.grid().size()[axis]).round() as i32 } else { 0 }
+        if axis < V::DIMENSION { (beyond[axis] / grid.size()[axis]).round() as i32 } else { 0 }
     })
 }
 

@@ -35,6 +35,14 @@ fn placed_grains_with_known_clusters() {
 }
 
 #[test]
+fn every_grain_knows_the_size_of_its_cluster() {
+    let bed = setting_of(DVec2::splat(10.0), [5, 5, 1]);
+    let positions = vec![DVec2::new(0.3, 2.0), DVec2::new(4.0, 6.0), DVec2::new(9.3, 2.0)];
+    let gas = bed.gas(0.0, positions.clone(), vec![DVec2::ZERO; 3]);
+    assert_eq!(cluster_sizes(gas.grid(), &positions, &[1.0; 3]), [2, 1, 2]);
+}
+
+#[test]
 fn a_chain_around_the_box_percolates_along_its_axis_alone() {
     let bed = setting_of(DVec3::splat(10.0), [5; 3]);
     let chain: Vec<DVec3> = (0..10).map(|k| DVec3::new(0.5, f64::from(k), 0.5)).collect();

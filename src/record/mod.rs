@@ -8,6 +8,7 @@
 pub mod contents;
 pub mod error;
 pub mod frame;
+pub mod index;
 pub mod overview;
 pub mod reader;
 pub mod recover;

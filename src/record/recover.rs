@@ -157,7 +157,7 @@ fn sound(opcode: u8, data: &[u8]) -> Option<Record<'_>> {
 }
 
 /// The records of a chunk whose checksum holds.
-fn chunk_records(chunk: &[u8], limit: usize) -> Option<Vec<Record<'static>>> {
+pub(crate) fn chunk_records(chunk: &[u8], limit: usize) -> Option<Vec<Record<'static>>> {
     let alone = LinearReaderOptions::default()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)

@@ -86,7 +86,7 @@ impl Fault {
         Fault::Damage(reason.to_string())
     }
 
-    fn at(self, path: &Path, position: u64) -> LogError {
+    pub(crate) fn at(self, path: &Path, position: u64) -> LogError {
         let path = path.to_owned();
         match self {
             Fault::End | Fault::Enough | Fault::NoHeader => LogError::NoHeader { path },
@@ -216,7 +216,7 @@ impl Progress {
     }
 }
 
-fn check_format(metadata: &BTreeMap<String, String>) -> Result<(), Fault> {
+pub(crate) fn check_format(metadata: &BTreeMap<String, String>) -> Result<(), Fault> {
     let text = metadata.get(schema::FORMAT_KEY).ok_or_else(|| Fault::damage("it names no format"))?;
     match text.parse::<u32>() {
         Ok(format) if format <= schema::FORMAT => Ok(()),

@@ -2,7 +2,7 @@
 
 /// A colour map from 0 … 1 to sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ColourMap {
+pub(crate) enum ColourMap {
     /// Deep blue over magenta to amber: speeds of grains on light paper, so its light end is left out.
     Speed,
     /// Violet over green to yellow: fields that fill an area.
@@ -41,7 +41,7 @@ pub fn field_colour(share: f64) -> [u8; 3] {
 
 impl ColourMap {
     /// The colours between which the map is a straight line.
-    pub(super) fn anchors(self) -> &'static [[u8; 3]] {
+    pub(crate) fn anchors(self) -> &'static [[u8; 3]] {
         match self {
             Self::Speed => &SPEED,
             Self::Field => &FIELD,
@@ -49,7 +49,7 @@ impl ColourMap {
     }
 
     /// The colour at `share`, held to 0 … 1; what is not a number counts as 0.
-    pub(super) fn at(self, share: f64) -> [u8; 3] {
+    pub(crate) fn at(self, share: f64) -> [u8; 3] {
         let anchors = self.anchors();
         let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
         let place = share * (anchors.len() - 1) as f64;
@@ -63,13 +63,13 @@ impl ColourMap {
     }
 
     /// The colour at `share` as `#rrggbb`.
-    pub(super) fn hexadecimal(self, share: f64) -> String {
+    pub(crate) fn hexadecimal(self, share: f64) -> String {
         let [red, green, blue] = self.at(share);
         format!("#{red:02x}{green:02x}{blue:02x}")
     }
 
     /// The map as a CSS gradient from left to right.
-    pub(super) fn gradient(self) -> String {
+    pub(crate) fn gradient(self) -> String {
         let anchors = self.anchors();
         let stops: Vec<String> =
             (0..anchors.len()).map(|k| self.hexadecimal(k as f64 / (anchors.len() - 1) as f64)).collect();

@@ -1,7 +1,7 @@
 //! Text made safe for HTML and SVG.
 
 /// `text` with the five characters that mean something to HTML replaced by entities.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -19,7 +19,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// JSON text made safe for the inside of a `<script>` element: no `<` can end it.
-pub(super) fn escape_json(json: &str) -> String {
+pub(crate) fn escape_json(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 

@@ -4,7 +4,7 @@ use crate::record::contents::{Frame, Walls};
 
 /// A view on the grains that stays the same for all frames of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Scene {
+pub(crate) struct Scene {
     /// `[axis]`: lower and upper end of what is shown [length].
     pub window: [[f64; 2]; 3],
     /// `[axis][side]` kind of the sides, as in [`Walls`].
@@ -22,7 +22,7 @@ const TALL: f64 = 2.2;
 
 impl Scene {
     /// The view on `frames`; `own_speeds` lets every frame have its own scale of speeds where they differ much.
-    pub(super) fn of(frames: &[&Frame], walls: Option<&Walls>, diameter: f64, own_speeds: bool) -> Self {
+    pub(crate) fn of(frames: &[&Frame], walls: Option<&Walls>, diameter: f64, own_speeds: bool) -> Self {
         let extent = extent(frames, diameter);
         let mut window = extent;
         let mut sides = <[[String; 2]; 3]>::default();
@@ -64,12 +64,12 @@ impl Scene {
     }
 
     /// Length of what is shown along `axis`.
-    pub(super) fn span(&self, axis: usize) -> f64 {
+    pub(crate) fn span(&self, axis: usize) -> f64 {
         self.window[axis][1] - self.window[axis][0]
     }
 
     /// Width over height of the picture.
-    pub(super) fn aspect(&self) -> f64 {
+    pub(crate) fn aspect(&self) -> f64 {
         let across = if self.is_deep { self.span(0) / self.span(2) } else { self.span(0) / self.span(1) };
         if self.is_turned { 1.0 / across } else { across }
     }
@@ -94,7 +94,7 @@ fn extent(frames: &[&Frame], diameter: f64) -> [[f64; 2]; 3] {
 }
 
 /// Speed of a grain.
-pub(super) fn speed(velocity: [f32; 3]) -> f64 {
+pub(crate) fn speed(velocity: [f32; 3]) -> f64 {
     velocity.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>().sqrt()
 }
 

@@ -9,7 +9,7 @@ use crate::record::contents::RunLog;
 
 /// The parameters that plots, laws and references depend on; `None` where the scenario does not have them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Setup {
+pub(crate) struct Setup {
     /// Title of the scenario, or its name.
     pub title: String,
     /// Name of the scenario.
@@ -52,7 +52,7 @@ pub(super) struct Setup {
 
 impl Setup {
     /// Reads the parameters of `log`, with `summary` first where both have one.
-    pub(super) fn of(log: &RunLog, summary: &Map<String, Value>) -> Self {
+    pub(crate) fn of(log: &RunLog, summary: &Map<String, Value>) -> Self {
         // A text that does not parse leaves the summary, which is enough for a plain report.
         let document = log.scenario.parse::<DocumentMut>().unwrap_or_default();
         let text = |key: &str| {
@@ -97,50 +97,50 @@ impl Setup {
     }
 
     /// Whether a constant force acts.
-    pub(super) fn has_gravity(&self) -> bool {
+    pub(crate) fn has_gravity(&self) -> bool {
         self.gravity.iter().any(|g| *g != 0.0)
     }
 
     /// The axis along which a constant force acts, if it acts along one alone.
-    pub(super) fn gravity_axis(&self) -> Option<usize> {
+    pub(crate) fn gravity_axis(&self) -> Option<usize> {
         let mut axes = (0..self.gravity.len()).filter(|axis| self.gravity[*axis] != 0.0);
         axes.next().filter(|_| axes.next().is_none())
     }
 
     /// Whether grains fall without end: a force along a periodic axis.
-    pub(super) fn is_pipe(&self) -> bool {
+    pub(crate) fn is_pipe(&self) -> bool {
         self.gravity_axis().is_some_and(|axis| self.periodic_axes.get(axis) == Some(&true))
     }
 
     /// Whether grains come to lie on something.
-    pub(super) fn has_floor(&self) -> bool {
+    pub(crate) fn has_floor(&self) -> bool {
         self.gravity_axis().is_some() && !self.is_pipe()
     }
 
     /// Whether nothing drives the gas, so that it ages by its collisions.
-    pub(super) fn is_undriven(&self) -> bool {
+    pub(crate) fn is_undriven(&self) -> bool {
         !self.has_gravity() && self.source.is_none() && self.wall_velocities.is_none()
     }
 
     /// The unit of a quantity in the names of the scenario.
-    pub(super) fn unit(&self, dimension: Dimension) -> String {
+    pub(crate) fn unit(&self, dimension: Dimension) -> String {
         unit(dimension, &self.units)
     }
 
     /// "name [unit]" of a column.
-    pub(super) fn label(&self, column: &Column) -> String {
+    pub(crate) fn label(&self, column: &Column) -> String {
         self.with_unit(&super::number::in_words(&column.name), column.unit)
     }
 
     /// "name [unit]".
-    pub(super) fn with_unit(&self, name: &str, dimension: Dimension) -> String {
+    pub(crate) fn with_unit(&self, name: &str, dimension: Dimension) -> String {
         let unit = self.unit(dimension);
         // "time [time]" says nothing.
         if unit.is_empty() || unit == name { name.to_owned() } else { format!("{name} [{unit}]") }
     }
 
     /// The unit of length (0), mass (1) or time (2) behind a number: one without a name is called a unit.
-    pub(super) fn named(&self, kind: usize) -> String {
+    pub(crate) fn named(&self, kind: usize) -> String {
         let kinds = ["length", "mass", "time"];
         if self.units[kind] == kinds[kind] {
             format!("{} units", kinds[kind])
@@ -150,12 +150,12 @@ impl Setup {
     }
 
     /// The label of a time axis.
-    pub(super) fn time_label(&self) -> String {
+    pub(crate) fn time_label(&self) -> String {
         self.with_unit("time", Dimension { time: 1, ..Dimension::default() })
     }
 
     /// The label of a length.
-    pub(super) fn length_label(&self, name: &str) -> String {
+    pub(crate) fn length_label(&self, name: &str) -> String {
         self.with_unit(name, Dimension { length: 1, ..Dimension::default() })
     }
 }

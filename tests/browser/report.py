@@ -64,13 +64,13 @@ return faults;
 class Browser:
     """A headless Chromium behind chromedriver."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, graphics=("--disable-gpu",)):
         # Port 0 lets the system choose; chromedriver prints which one it took.
         self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True)
         try:
             self.address = self.listening_address()
             self.session = None
-            self.session = self.start(folder)
+            self.session = self.start(folder, graphics)
         except BaseException:
             self.driver.kill()
             raise
@@ -82,9 +82,9 @@ class Browser:
                 return f"http://127.0.0.1:{found.group(1)}"
         raise SystemExit("chromedriver ended without a port")
 
-    def start(self, folder):
-        arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
-                     "--disable-dev-shm-usage", "--window-size=1160,1400", f"--user-data-dir={folder}"]
+    def start(self, folder, graphics):
+        arguments = ["--headless", "--no-sandbox", "--disable-background-networking", "--disable-dev-shm-usage",
+                     "--window-size=1160,1400", f"--user-data-dir={folder}", *graphics]
         capabilities = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": {"args": arguments},
                                         "goog:loggingPrefs": {"browser": "ALL"}}}
         return self.send("POST", "/session", {"capabilities": capabilities})["sessionId"]

@@ -1,9 +1,11 @@
 #!/bin/sh
-# Opens a report in headless Chromium and checks that it works: tests/browser/run.sh REPORT.html...
+# Opens pages in headless Chromium and checks that they work:
+#   tests/browser/run.sh REPORT.html...
+#   tests/browser/run.sh view GRAINFLOW LOG [LOG2]
 # Installs what it needs on Debian; fails when a tool is missing.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-[ "$#" -gt 0 ] || { echo "usage: $0 REPORT.html..." >&2; exit 2; }
+[ "$#" -gt 0 ] || { echo "usage: $0 REPORT.html... | view GRAINFLOW LOG [LOG2]" >&2; exit 2; }
 
 missing=""
 command -v chromium >/dev/null 2>&1 || missing="$missing chromium"
@@ -20,4 +22,8 @@ fi
 for tool in chromium chromedriver python3; do
     command -v "$tool" >/dev/null 2>&1 || { echo "$tool is missing" >&2; exit 1; }
 done
+if [ "$1" = view ]; then
+    shift
+    exec python3 "$here/view.py" "$@"
+fi
 exec python3 "$here/report.py" "$@"

@@ -50,6 +50,12 @@ impl Forest {
         roots.map(|(root, _)| self.sizes[root]).collect()
     }
 
+    /// Things in the tree of `thing`, itself included.
+    pub(super) fn size_with(&mut self, thing: usize) -> u32 {
+        let (root, _) = self.root(thing);
+        self.sizes[root]
+    }
+
     /// Whether something is joined with its own image along an axis.
     pub(super) fn winds(&self) -> [bool; 3] {
         self.winds

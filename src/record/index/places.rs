@@ -1,0 +1,156 @@
+//! Where the messages of a log stand.
+
+use mcap::Summary;
+use mcap::records::{ChunkIndex, Record};
+
+use super::head::Head;
+use super::records::Records;
+use crate::record::error::LogError;
+
+/// The `rank`-th message of its channel in a chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Spot {
+    /// Number of the chunk.
+    pub(super) chunk: u32,
+    /// Messages of the same channel before it in the chunk.
+    pub(super) rank: u32,
+}
+
+/// Where a frame stands, and which recording it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FramePlace {
+    /// When it was taken [tick].
+    pub(super) tick: u64,
+    /// Number of its row of the series.
+    pub(super) recording: u32,
+    pub(super) spot: Spot,
+}
+
+/// Where everything stands.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// `[chunk]`: where it begins [byte].
+    pub(super) chunks: Vec<u64>,
+    pub(super) recordings: Vec<Spot>,
+    pub(super) frames: Vec<FramePlace>,
+    /// Parts of saved states.
+    pub(super) states: Vec<Spot>,
+    /// Where the chunk begins that tells of the walls [byte].
+    pub(super) walls: Option<u64>,
+    /// Places in the sequence of recordings and, until they are paired, of frames.
+    sequences: [Vec<u32>; 2],
+    /// Messages of measures, particles and states in the chunk that is being read.
+    ranks: [u32; 3],
+}
+
+impl Places {
+    /// What the index of the file says; `None` where it does not fit together.
+    pub(super) fn by_summary(
+        summary: &Summary,
+        records: &Records,
+        head: &Head,
+    ) -> Result<Option<Self>, LogError> {
+        let mut places = Places::default();
+        let mut ticks = Vec::new();
+        let mut chunks: Vec<&ChunkIndex> = summary.chunk_indexes.iter().collect();
+        chunks.sort_by_key(|chunk| chunk.chunk_start_offset);
+        for index in chunks {
+            let chunk = places.chunks.len() as u32;
+            places.chunks.push(index.chunk_start_offset);
+            let holds = |channel: Option<u16>| {
+                channel.is_some_and(|id| index.message_index_offsets.contains_key(&id))
+            };
+            if holds(head.walls) {
+                places.walls = Some(index.chunk_start_offset);
+            }
+            if ![head.measures, head.particles, head.states].into_iter().any(holds) {
+                continue;
+            }
+            let Some(entries) = message_entries(index, records)? else { return Ok(None) };
+            for Entries { channel, ticks: of_channel } in entries {
+                for (rank, tick) in of_channel.into_iter().enumerate() {
+                    let spot = Spot { chunk, rank: rank as u32 };
+                    match Some(channel) {
+                        id if id == head.measures => {
+                            places.recordings.push(spot);
+                            ticks.push(tick);
+                        }
+                        id if id == head.particles => {
+                            let recording = places.frames.len() as u32;
+                            places.frames.push(FramePlace { tick, recording, spot });
+                        }
+                        id if id == head.states => places.states.push(spot),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        // Message n of the one belongs to message n of the other: in a log of which parts were lost, that is not so.
+        let pairs = places.frames.len() == ticks.len()
+            && places.frames.iter().zip(&ticks).all(|(frame, tick)| frame.tick == *tick);
+        Ok(pairs.then_some(places))
+    }
+
+    /// The chunk at `start` is the one that follows.
+    pub(super) fn begin_chunk(&mut self, start: u64) {
+        self.chunks.push(start);
+        self.ranks = [0; 3];
+    }
+
+    /// Takes note of a record of the chunk that was begun last.
+    pub(super) fn add(&mut self, record: &Record<'_>, head: &Head) {
+        let Record::Message { header, .. } = record else { return };
+        let chunk = self.chunks.len() as u32 - 1;
+        let channels = [head.measures, head.particles, head.states];
+        let Some(kind) = channels.iter().position(|id| *id == Some(header.channel_id)) else { return };
+        let spot = Spot { chunk, rank: self.ranks[kind] };
+        self.ranks[kind] += 1;
+        match kind {
+            0 => {
+                self.recordings.push(spot);
+                self.sequences[0].push(header.sequence);
+            }
+            1 => {
+                self.frames.push(FramePlace { tick: header.log_time, recording: 0, spot });
+                self.sequences[1].push(header.sequence);
+            }
+            _ => self.states.push(spot),
+        }
+    }
+
+    /// Gives every frame its recording; a frame whose recording was lost is left out.
+    pub(super) fn pair(&mut self) {
+        let [recordings, frames] = std::mem::take(&mut self.sequences);
+        let mut paired = Vec::with_capacity(frames.len());
+        for (place, sequence) in self.frames.iter().zip(frames) {
+            if let Ok(recording) = recordings.binary_search(&sequence) {
+                paired.push(FramePlace { recording: recording as u32, ..*place });
+            }
+        }
+        self.frames = paired;
+    }
+}
+
+/// The messages of one channel in a chunk, in their order.
+struct Entries {
+    channel: u16,
+    ticks: Vec<u64>,
+}
+
+/// What the index says of a chunk; `None` where it makes no sense.
+fn message_entries(index: &ChunkIndex, records: &Records) -> Result<Option<Vec<Entries>>, LogError> {
+    let Some(mut start) = index.chunk_start_offset.checked_add(index.chunk_length) else { return Ok(None) };
+    let Some(end) = start.checked_add(index.message_index_length) else { return Ok(None) };
+    let mut entries = Vec::new();
+    while start < end {
+        let Some(raw) = records.at(start)? else { return Ok(None) };
+        let Ok(Record::MessageIndex(mut found)) = mcap::parse_record(raw.kind, &raw.body) else {
+            return Ok(None);
+        };
+        found.records.sort_by_key(|entry| entry.offset);
+        let ticks = found.records.iter().map(|entry| entry.log_time).collect();
+        entries.push(Entries { channel: found.channel_id, ticks });
+        start = raw.end;
+    }
+    Ok(Some(entries))
+}
