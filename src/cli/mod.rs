@@ -7,6 +7,8 @@ mod check;
 mod compare;
 mod input;
 mod progress;
+mod recover;
+mod replay;
 mod run;
 mod scenarios;
 mod sweep;
@@ -25,6 +27,8 @@ enum Exit {
     RunFailed = 1,
     /// The input is wrong.
     BadInput = 2,
+    /// What was to be verified does not hold.
+    NotVerified = 3,
     /// Interrupted.
     Interrupted = 130,
 }
@@ -45,10 +49,12 @@ const EXAMPLES: &str = "Examples:
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow compare cooling --engines hsmc,event-driven    the same grains through both
+  grainflow run --resume out/heap-hsmc           go on where an interrupted run has stopped
+  grainflow replay out/heap-hsmc --verify        run it again, and compare bit for bit
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
-Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 130 interrupted.";
+Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 3 a verification did not hold; 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -56,6 +62,8 @@ enum Command {
     Calibrate(calibrate::CalibrateArguments),
     Sweep(sweep::SweepArguments),
     Compare(compare::CompareArguments),
+    Replay(replay::ReplayArguments),
+    Recover(recover::RecoverArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
 }
@@ -67,6 +75,8 @@ pub fn main() -> ExitCode {
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Replay(arguments) => replay::replay(&arguments),
+        Command::Recover(arguments) => recover::recover(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
     };

@@ -35,7 +35,7 @@ pub fn read_origin(path: &Path) -> Result<(BTreeMap<String, String>, String), Lo
         match event {
             Event::Metadata(found) => metadata = found,
             Event::Scenario(found) => scenario = found,
-            Event::Channel { .. } | Event::Message { .. } => {}
+            _ => {}
         }
         Ok(())
     })?;
@@ -55,6 +55,28 @@ pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<'static, V
     each_state(path, |state| last = Some(state))?;
     Ok(last)
 }
+
+/// The same, with the number of its first part in the sequence of the states.
+pub(crate) fn last_state_and_place<V: Vector>(path: &Path) -> Result<Option<Placed<V>>, LogError> {
+    let (mut last, mut first_part) = (None, 0);
+    let mut assembly = Assembly::<V>::default();
+    scan(path, &mut |event| {
+        if let Event::Message { topic: topic::STATE, sequence, data, .. } = event {
+            let part = State::decode(data).map_err(Fault::damage)?;
+            if part.first_row == 0 {
+                first_part = sequence;
+            }
+            if let Some(state) = assembly.add(&part).map_err(Fault::damage)? {
+                last = Some((state, first_part));
+            }
+        }
+        Ok(())
+    })?;
+    Ok(last)
+}
+
+/// A state and the number of its first part in the sequence of the states.
+pub(crate) type Placed<V> = (SavedState<'static, V>, u32);
 
 fn each_state<V: Vector>(path: &Path, mut take: impl FnMut(SavedState<'static, V>)) -> Result<(), LogError> {
     let mut assembly = Assembly::<V>::default();
@@ -93,7 +115,7 @@ impl Contents {
                     .ok_or_else(|| Fault::damage("the columns of the series have no proper units"))?;
                 (self.numbers, self.log.columns) = columns.into_iter().unzip();
             }
-            Event::Message { topic, sequence, data } => match topic {
+            Event::Message { topic, sequence, data, .. } => match topic {
                 topic::MEASURES => self.measures(sequence, data)?,
                 topic::PARTICLES => self.frame(sequence, data)?,
                 topic::PROFILES => self.log.profiles.push(profile(data)?),
@@ -102,7 +124,7 @@ impl Contents {
                 }
                 _ => {}
             },
-            Event::Channel { .. } => {}
+            _ => {}
         }
         Ok(())
     }
@@ -131,7 +153,7 @@ impl Contents {
     }
 }
 
-fn profile(data: &[u8]) -> Result<Profile, Fault> {
+pub(super) fn profile(data: &[u8]) -> Result<Profile, Fault> {
     let message = ProfileMessage::decode(data).map_err(Fault::damage)?;
     let mut profile =
         Profile { name: message.name, time: message.time, columns: Vec::new(), values: Vec::new() };
