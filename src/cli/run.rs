@@ -79,6 +79,10 @@ fn resume(arguments: &RunArguments) -> Exit {
         complain(&ResumeError::Change(option.to_owned()));
         return Exit::BadInput;
     }
+    if let Err(error) = prepare(arguments.threads) {
+        complain(&error);
+        return Exit::RunFailed;
+    }
     let resumption = match Resumption::open(Path::new(&input.scenario), &input.sets) {
         Ok(resumption) => resumption,
         Err(error) => {
@@ -86,10 +90,6 @@ fn resume(arguments: &RunArguments) -> Exit {
             return Exit::BadInput;
         }
     };
-    if let Err(error) = prepare(arguments.threads) {
-        complain(&error);
-        return Exit::RunFailed;
-    }
     let mut progress = Progress::new(arguments.quiet);
     if !arguments.quiet {
         print!("{}", opening_words(&resumption));

@@ -209,7 +209,8 @@ fn go_on<V: Vector>(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Ending, StepError> {
-    use crate::engine::Laps;
+    use crate::engine::{Horizon, Laps};
+    let mut stops = false;
     loop {
         watch.start("recording");
         recorder.record_if_due(simulation).map_err(StepError::Log)?;
@@ -217,10 +218,15 @@ fn go_on<V: Vector>(
         if let Some(reason) = simulation.end_reason() {
             return Ok(Ending::Reached(reason));
         }
-        if stop.load(Relaxed) {
+        if stops || stop.load(Relaxed) && !simulation.is_event_driven() {
             return Ok(Ending::Interrupted);
         }
-        let horizon = recorder.horizon(simulation);
+        let mut horizon = recorder.horizon(simulation);
+        if stop.load(Relaxed) {
+            // Without steps a run stops at a time, which a re-run will find again.
+            let time = simulation.gas().time().next_up();
+            (stops, horizon) = (true, horizon.min(Horizon { time, ..Horizon::NONE }));
+        }
         simulation.advance(watch, horizon).map_err(StepError::Simulation)?;
     }
 }

@@ -98,8 +98,10 @@ impl<'s, V: Vector> Rerun<'s, V> {
         (totals.particle_steps, totals.events.all)
     }
 
-    /// Goes on to exactly `time` [time].
-    pub(super) fn advance_to(&mut self, time: f64) -> Reached {
+    /// Goes on to exactly `time` [time], where something is due, or where a run was interrupted that `stops` there.
+    pub(super) fn advance_to(&mut self, time: f64, stops: bool) -> Reached {
+        // Where collisions are counted, a time does not say which of them have happened.
+        let there = Horizon { time: if stops { time } else { f64::INFINITY }, ..Horizon::NONE };
         loop {
             let (stop, tell) = (self.stop, &mut self.tell);
             let running = self.running.as_mut().expect("it begins with the first thing that is checked");
@@ -128,11 +130,18 @@ impl<'s, V: Vector> Rerun<'s, V> {
             if timetable.wants_state(simulation) {
                 timetable.state_saved(simulation);
             }
-            let horizon = timetable.horizon(simulation).min(Horizon { time, ..Horizon::NONE });
+            let horizon = timetable.horizon(simulation).min(there);
             if let Err(error) = simulation.advance(&mut NoLaps, horizon) {
                 return Reached::Not(format!("the re-run ends at t = {now:?}, and the log goes on: {error}"));
             }
         }
+    }
+
+    /// Whether a run was interrupted at `state`: nothing is due there, and no end.
+    pub(super) fn is_interruption(&self, state: &SavedState<'static, V>) -> bool {
+        let Running { simulation, timetable, .. } = self.now();
+        let there = Simulation::resume(simulation.scenario(), state.clone());
+        there.end_reason().is_none() && !timetable.wants_state(&there)
     }
 
     /// Takes the recording that is due: names of the columns, and their values.

@@ -214,7 +214,7 @@ impl<V: Vector> Check<'_, V> {
                 self.recording(&values, &state_hash, grains)
             }
             Checkpoint::State(state) => self.rerun.begin(Some(&state)).map_err(End::Failed).and_then(|()| {
-                self.reach(state.time)?;
+                self.reach(state.time, self.rerun.is_interruption(&state))?;
                 let difference = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
                     first_difference(&state, rerun, self.same_version)
                 });
@@ -228,7 +228,7 @@ impl<V: Vector> Check<'_, V> {
     fn recording(&mut self, values: &[f64], hash: &str, grains: u64) -> Result<(), End> {
         self.rerun.begin(None).map_err(End::Failed)?;
         let time = values.first().copied().unwrap_or(f64::NAN);
-        self.reach(time)?;
+        self.reach(time, false)?;
         let (columns, row) = self.rerun.recording();
         let gas = self.rerun.gas();
         if state_hash(gas) != hash {
@@ -273,8 +273,8 @@ impl<V: Vector> Check<'_, V> {
         Err(End::Different(grain.map_or(parted, |grain| self.at(grain))))
     }
 
-    fn reach(&mut self, time: f64) -> Result<(), End> {
-        match self.rerun.advance_to(time) {
+    fn reach(&mut self, time: f64, stops: bool) -> Result<(), End> {
+        match self.rerun.advance_to(time, stops) {
             Reached::Here => Ok(()),
             Reached::Interrupted => Err(End::Interrupted),
             Reached::Not(difference) => Err(End::Different(difference)),
