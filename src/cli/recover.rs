@@ -9,15 +9,14 @@ use crate::record::error::LogError;
 use crate::record::recover::{Recovery, recover as recover_log};
 
 /// Make a clean, indexed log of what is sound in a damaged one
-///
-/// The damaged log stays as it is. Of a log that is whole nothing is written.
 #[derive(Args, Debug)]
+#[command(after_help = "The damaged log stays as it is. Of a log that is whole nothing is written.")]
 pub(super) struct RecoverArguments {
     /// A log, or a run folder
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
-    /// The file to write [default: beside LOG, as in log.recovered.mcap]
+    /// The file to write [default: log.recovered.mcap beside the log]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -49,15 +48,21 @@ pub(super) fn recover(arguments: &RecoverArguments) -> Exit {
 
 /// What was found, and what was lost.
 fn words(recovery: &Recovery) -> String {
-    let mut text = format!("{} messages are sound\n", recovery.messages);
-    if recovery.damaged_parts > 0 {
-        text += &format!("{} parts of the file are damaged and left out\n", recovery.damaged_parts);
+    let mut text = match recovery.messages {
+        1 => "1 message is sound\n".to_owned(),
+        messages => format!("{messages} messages are sound\n"),
+    };
+    match recovery.damaged_parts {
+        0 => {}
+        1 => text += "1 part of the file is damaged and left out\n",
+        parts => text += &format!("{parts} parts of the file are damaged and left out\n"),
     }
     if recovery.cut_off {
         text += "the file ends too early: what was not yet complete is lost\n";
     }
     for (topic, lost) in &recovery.lost {
-        text += &format!("lost in between: {lost} messages of {topic}\n");
+        let messages = if *lost == 1 { "message" } else { "messages" };
+        text += &format!("lost: {lost} {messages} of {topic}\n");
     }
     text + &match (recovery.whole_until, recovery.end) {
         (_, None) => "no recording is left\n".to_owned(),

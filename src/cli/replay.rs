@@ -9,16 +9,22 @@ use super::run::{STOP, prepare};
 use super::{Exit, complain};
 use crate::run::verify::{Extent, Verdict, VerifyError, verify};
 
+const VERIFYING: &str =
+    "A log that holds gives exit code 0. Where something differs, the first time, grain and field that do
+are told, and the exit code is 3. A log that cannot be verified (damaged, made by a version with
+other numerics, with a hole) gives 2.
+
+  grainflow replay out/cooling-hsmc --verify";
+
 /// Run the scenario of a log again and compare bit for bit
 #[derive(Args, Debug)]
+#[command(after_help = VERIFYING)]
 pub(super) struct ReplayArguments {
     /// A log, or a run folder
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
-    /// Run the attached scenario again; compare the state hash at every recording and every field of every full state
-    ///
-    /// Exit code 3 where something differs, with the first time, grain and field that does.
+    /// Run the scenario again and compare every recording and state bit for bit
     #[arg(long, required = true)]
     verify: bool,
 

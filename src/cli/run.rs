@@ -13,20 +13,26 @@ use crate::run::resume::{ResumeError, Resumption};
 use crate::run::{Outcome, RunError};
 use crate::scenario::model::AnyScenario;
 
+const RESUMING: &str =
+    "With --resume the new folder holds the whole run, to the same bits as without interruption;
+what was resumed stays as it is. --out is by default the folder of the log with -resumed behind.
+--set may give a later end (run.*) or other records (record.*); the rest of the scenario stays.
+
+  grainflow run --resume out/heap-hsmc
+  grainflow run --resume out/shear-hsmc --set run.collisions_per_particle=800";
+
 /// Run a scenario and write a run folder: log, tables, summary, report
 #[derive(Args, Debug)]
+#[command(after_help = RESUMING)]
 pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
 
-    /// Go on with the run whose log or run folder stands in place of SCENARIO, from its last complete state
-    ///
-    /// The new folder holds the whole run, also what was recorded before; the log that was resumed stays as it
-    /// is. To the end of the scenario, or to a later one: --set may change run.* and record.*, nothing else.
+    /// Go on from the last complete state of a log; SCENARIO is the log or its run folder
     #[arg(long)]
     resume: bool,
 
-    /// Folder to write to [default: out/<scenario>-<engine>; with --resume that of the log, with -resumed behind]
+    /// Folder to write to [default: out/<scenario>-<engine>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 

@@ -47,6 +47,12 @@ pub enum VerifyError {
     /// Parts of the scenario are in other dimensions.
     #[error("the log {} has parts in two and in three dimensions: it is not as it was written", .0.display())]
     Dimensions(PathBuf),
+    /// It holds nothing yet.
+    #[error(
+        "the log {} holds neither a recording nor a state: there is nothing to verify; it was cut off before anything was \
+         complete", .0.display()
+    )]
+    Nothing(PathBuf),
     /// Something was lost before the log was recovered.
     #[error(
         "the log {} was recovered from a damaged one, and {} missing: up to t = {} it is identical ({} hashes, {} states), \
@@ -173,6 +179,7 @@ fn verify_in<V: Vector>(
         (Some(End::Different(difference)), _) | (None, Some(difference)) => {
             Ok(Verdict::Different(extent, difference))
         }
+        (None, None) if extent.hashes + extent.states == 0 => Err(VerifyError::Nothing(log.to_owned())),
         (None, None) => Ok(Verdict::Identical(extent, history.cut_off.clone())),
     }
 }

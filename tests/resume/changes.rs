@@ -80,14 +80,16 @@ fn a_log_can_do_without_the_files_that_its_run_began_with() {
     fs::write(&table, "volume_fraction,probability\n0.0,1.0\n0.5,0.9\n0.82,0.0\n").unwrap();
     let table = format!("engine.hsmc.entry_probability={{ table = \"{}\" }}", table.display());
     let log = format!("initial.positions={{ log = \"{}\" }}", first.folder.join("log.mcap").display());
-    for (engine, sets) in [("hsmc", vec![log.as_str(), table.as_str()]), ("event-driven", vec![log.as_str()])] {
+    for (engine, sets) in [("hsmc", vec![log.as_str(), table.as_str()]), ("event-driven", vec![log.as_str()])]
+    {
         let small = gas(engine);
         let sets = sets.iter().map(ToString::to_string).collect();
         let scenario = parse("gas", &small.text, &Overrides { sets, ..Default::default() }).unwrap();
         let whole = run_into(&place.path(engine), &scenario);
         let bytes = log_bytes(&whole);
         // Out of sight.
-        let hidden = [("first", "hidden"), ("entry.csv", "hidden.csv")].map(|(a, b)| (place.path(a), place.path(b)));
+        let hidden =
+            [("first", "hidden"), ("entry.csv", "hidden.csv")].map(|(a, b)| (place.path(a), place.path(b)));
         hidden.iter().for_each(|(here, there)| fs::rename(here, there).unwrap());
         verified(&whole.folder);
         for percent in [12, 50] {

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use grainflow::record::reader::read_log;
@@ -45,11 +45,11 @@ fn succeeds(place: &Place, arguments: &[&str]) {
     assert!(grainflow(place, arguments).status().unwrap().success(), "{arguments:?}");
 }
 
-/// Waits until the log at `path` has begun.
-fn wait_for(path: &Path) {
+/// Waits until the log at `path` has so many bytes, or the program is done.
+fn wait_for(child: &mut Child, path: &Path, bytes: u64) {
     let since = Instant::now();
-    while fs::metadata(path).map_or(0, |log| log.len()) < 500 {
-        assert!(since.elapsed() < Duration::from_secs(60), "{} does not begin", path.display());
+    while fs::metadata(path).map_or(0, |log| log.len()) < bytes && child.try_wait().unwrap().is_none() {
+        assert!(since.elapsed() < Duration::from_secs(100), "{} does not grow", path.display());
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -60,18 +60,15 @@ fn kill(times: [u32; 3]) {
     for ((name, sets), times) in RUNS.into_iter().zip(times) {
         let place = Place::new();
         let run = |out: &'static str| [&["run", name, "--out", out], sets].concat();
-        let mut child = grainflow(&place, &run("whole")).spawn().unwrap();
-        wait_for(&place.path("whole/log.mcap"));
-        let begun = Instant::now();
-        assert!(child.wait().unwrap().success());
-        let length = begun.elapsed();
+        succeeds(&place, &run("whole"));
         let whole = fs::read(place.path("whole/log.mcap")).unwrap();
         for k in 0..times {
             let mut child = grainflow(&place, &run("killed")).spawn().unwrap();
             let log = place.path("killed/log.mcap");
-            wait_for(&log);
-            // Multiples of the golden ratio fall everywhere.
-            std::thread::sleep(length.mul_f64((f64::from(k + 1) * 0.618_034) % 1.0));
+            // Multiples of irrational numbers fall everywhere: a length of the log, and a moment after that.
+            let [length, pause] = [0.618_034, 0.414_214].map(|step| (f64::from(k + 1) * step) % 1.0);
+            wait_for(&mut child, &log, (whole.len() as f64 * length).max(500.0) as u64);
+            std::thread::sleep(Duration::from_millis(30).mul_f64(pause));
             child.kill().unwrap();
             child.wait().unwrap();
             let killed = read_log(&log).unwrap();

@@ -55,7 +55,8 @@ pub(crate) fn log_bytes(outcome: &Outcome) -> Vec<u8> {
 
 /// The summary without what a run costs, and without where it was resumed.
 pub(crate) fn figures(outcome: &Outcome) -> Map<String, Value> {
-    let is_cost = |key: &str| key.ends_with("_second") || key.ends_with("_seconds") || key == "peak_memory_bytes";
+    let is_cost =
+        |key: &str| key.ends_with("_second") || key.ends_with("_seconds") || key == "peak_memory_bytes";
     let mut figures = outcome.summary.clone();
     figures.retain(|key, _| !is_cost(key) && key != "resumed_at");
     figures

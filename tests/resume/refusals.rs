@@ -65,7 +65,8 @@ fn what_does_not_hold_is_told_apart() {
     let cut = [&unfinished[..start.start], &unfinished[start.end..]].concat();
     assert_says(trial.said(&cut), false, "a part was taken out of the file");
     // Another scenario: its text alone, and everything that says so.
-    let swapped = rewritten(&trial.bytes, |_| {}, |text| text.replace("restitution = 0.9", "restitution = 0.8"));
+    let swapped =
+        rewritten(&trial.bytes, |_| {}, |text| text.replace("restitution = 0.9", "restitution = 0.8"));
     assert_says(trial.said(&swapped), true, "the scenario in the log is another one than it was begun with");
     let forged = rewritten(
         &trial.bytes,
@@ -96,7 +97,11 @@ fn what_does_not_hold_is_told_apart() {
         metadata.insert("format".to_owned(), "9".to_owned());
         metadata.insert("version".to_owned(), "9.8.7".to_owned());
     };
-    assert_says(trial.said(&rewritten(&trial.bytes, newer, same)), false, "the version that wrote it (9.8.7)");
+    assert_says(
+        trial.said(&rewritten(&trial.bytes, newer, same)),
+        false,
+        "the version that wrote it (9.8.7)",
+    );
     assert_says(trial.said(&[]), false, "is empty");
 }
 
@@ -132,7 +137,8 @@ fn what_may_not_change_is_refused() {
     assert!(said.contains("--set #1 'record.frames=many'") && said.contains("whole number"), "{said}");
     let swapped = rewritten(&trial.bytes, |_| {}, |text| text.replace("0.9", "0.8"));
     assert!(trial.refused_to_resume(&swapped, &[]).contains("is not the one that the log was begun with"));
-    let older = rewritten(&trial.bytes, |metadata| drop(metadata.insert("numerics".into(), "1".into())), |t| t);
+    let older =
+        rewritten(&trial.bytes, |metadata| drop(metadata.insert("numerics".into(), "1".into())), |t| t);
     assert!(trial.refused_to_resume(&older, &[]).contains("resume it with grainflow"));
     assert!(trial.refused_to_resume(&without_chunk(&trial.bytes, 5), &[]).contains("is not whole"));
     assert!(trial.refused_to_resume(b"", &[]).contains("is empty"));
