@@ -1,8 +1,11 @@
 //! Where two saved states part: the first grain and field, or the first sum.
 
 use crate::engine::EngineState;
+use crate::record::contents::Frame;
 use crate::record::state::SavedState;
 use crate::space::Vector;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a log and a re-run say of the same thing.
 pub(super) fn said(what: &str, log: impl std::fmt::Debug, rerun: impl std::fmt::Debug) -> String {
@@ -36,7 +39,7 @@ fn grains<V: Vector>(log: &SavedState<'_, V>, rerun: &SavedState<'_, V>) -> Opti
         let name = |field: &str| format!("grain {}: {field}", a.ids[row]);
         let vector = |field: &str, a: V, b: V| {
             let axis = (0..V::DIMENSION).find(|&axis| a[axis].to_bits() != b[axis].to_bits())?;
-            Some(said(&name(&format!("{field} {}", ["x", "y", "z"][axis])), a[axis], b[axis]))
+            Some(said(&name(&format!("{field} {}", AXES[axis])), a[axis], b[axis]))
         };
         let spins = || match (&a.spins, &b.spins) {
             (Some(a), Some(b)) if !same(a[row].as_ref(), b[row].as_ref()) => {
@@ -52,6 +55,24 @@ fn grains<V: Vector>(log: &SavedState<'_, V>, rerun: &SavedState<'_, V>) -> Opti
             .or_else(|| vector("velocity", a.velocities[row], b.velocities[row]))
             .or_else(spins)
             .or_else(species)
+    })
+}
+
+/// The first grain of the picture in a log that is another one in that of a re-run.
+pub(super) fn grain_in_picture(log: &Frame, rerun: &Frame) -> Option<String> {
+    let mut rows: Vec<(u32, usize)> = rerun.ids.iter().copied().zip(0..).collect();
+    rows.sort_unstable();
+    log.ids.iter().enumerate().find_map(|(k, id)| {
+        let Ok(place) = rows.binary_search_by_key(id, |&(id, _)| id) else {
+            return Some(format!("grain {id} is in the log alone"));
+        };
+        let row = rows[place].1;
+        let field = |name: &str, a: [f32; 3], b: [f32; 3]| {
+            let axis = (0..3).find(|&axis| a[axis].to_bits() != b[axis].to_bits())?;
+            Some(said(&format!("grain {id}: {name} {}", AXES[axis]), a[axis], b[axis]))
+        };
+        field("position", log.positions[k], rerun.positions[row])
+            .or_else(|| field("velocity", log.velocities[k], rerun.velocities[row]))
     })
 }
 

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::rerun::{Reached, Rerun};
 use super::resume::scenario_of;
-use super::state_difference::{first_difference, said, same};
+use super::state_difference::{first_difference, grain_in_picture, said, same};
 use super::{Listener, NUMERICS, RunError};
 use crate::matter::state_hash::state_hash;
 use crate::record::checkpoints::{Checkpoint, each_checkpoint};
@@ -262,21 +262,7 @@ impl<V: Vector> Check<'_, V> {
     fn frame(&mut self, log: &Frame) -> Result<(), End> {
         let Some(parted) = self.parted.take() else { return Ok(()) };
         let gas = self.rerun.gas();
-        let rerun = frame(gas.time(), gas.columns(), None);
-        let mut rows: Vec<(u32, usize)> = rerun.ids.iter().copied().zip(0..).collect();
-        rows.sort_unstable();
-        let grain = log.ids.iter().enumerate().find_map(|(k, id)| {
-            let place = rows.binary_search_by_key(id, |&(id, _)| id);
-            let Ok(place) = place else { return Some(format!("grain {id} is in the log alone")) };
-            let row = rows[place].1;
-            let field = |name: &str, a: [f32; 3], b: [f32; 3]| {
-                let axis = (0..3).find(|&axis| a[axis].to_bits() != b[axis].to_bits())?;
-                let field = format!("grain {id}: {name} {}", ["x", "y", "z"][axis]);
-                Some(said(&field, a[axis], b[axis]))
-            };
-            field("position", log.positions[k], rerun.positions[row])
-                .or_else(|| field("velocity", log.velocities[k], rerun.velocities[row]))
-        });
+        let grain = grain_in_picture(log, &frame(gas.time(), gas.columns(), None));
         Err(End::Different(grain.map_or(parted, |grain| self.at(grain))))
     }
 
