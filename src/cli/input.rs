@@ -11,19 +11,19 @@ use crate::scenario::{Overrides, load};
 pub(super) struct ScenarioInput {
     /// A scenario file, or the name of a built-in scenario (see `grainflow scenarios`)
     #[arg(value_name = "SCENARIO")]
-    scenario: String,
+    pub(super) scenario: String,
 
     /// Engine in place of the scenario's: dsmc, cba, hsmc or event-driven
     #[arg(long, value_name = "KIND")]
-    engine: Option<String>,
+    pub(super) engine: Option<String>,
 
     /// Seed of all random numbers, from 0 to 2^63 - 1
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    seed: Option<u64>,
+    pub(super) seed: Option<u64>,
 
     /// Change one key, as in particles.count=500 or gravity[1]=-2; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    sets: Vec<String>,
+    pub(super) sets: Vec<String>,
 }
 
 impl ScenarioInput {

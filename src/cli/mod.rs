@@ -8,6 +8,7 @@ mod compare;
 mod export;
 mod input;
 mod progress;
+mod recover;
 mod replay;
 mod run;
 mod scenarios;
@@ -29,6 +30,8 @@ enum Exit {
     RunFailed = 1,
     /// The input is wrong.
     BadInput = 2,
+    /// What was to be verified does not hold.
+    NotVerified = 3,
     /// Interrupted.
     Interrupted = 130,
 }
@@ -49,13 +52,15 @@ const EXAMPLES: &str = "Examples:
   grainflow run shear --set particles.restitution=0.8 --seed 3
   grainflow sweep heap --vary particles.restitution=[0.9,0.7,0.5]
   grainflow compare cooling --engines hsmc,event-driven    the same grains through both
+  grainflow run --resume out/heap-hsmc           go on where an interrupted run has stopped
+  grainflow replay out/heap-hsmc --verify        run it again, and compare bit for bit
   grainflow view out/heap-hsmc                   what happened, in the browser
   grainflow replay out/heap-hsmc --speed 20      watch it in the terminal
   grainflow export out/heap-hsmc --format vtp    for ParaView
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
-Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 130 interrupted.";
+Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 3 a verification did not hold; 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -65,6 +70,7 @@ enum Command {
     Compare(compare::CompareArguments),
     Replay(replay::ReplayArguments),
     Export(export::ExportArguments),
+    Recover(recover::RecoverArguments),
     Check(check::CheckArguments),
     Scenarios(scenarios::ScenariosArguments),
     View(view::ViewArguments),
@@ -79,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Replay(arguments) => replay::replay(&arguments),
         Command::Export(arguments) => export::export(&arguments),
+        Command::Recover(arguments) => recover::recover(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
         Command::View(arguments) => view::view(&arguments),

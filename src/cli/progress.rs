@@ -20,8 +20,8 @@ pub(super) struct Progress {
     quiet: bool,
     watch: Stopwatch,
     last: f64,
-    /// Particle-steps or events at the last time.
-    last_work: u64,
+    /// Particle-steps or events at the last time; nothing before the first.
+    last_work: Option<u64>,
 }
 
 impl Progress {
@@ -34,7 +34,7 @@ impl Progress {
             );
             bar
         });
-        Progress { bar, quiet, watch: Stopwatch::default(), last: 0.0, last_work: 0 }
+        Progress { bar, quiet, watch: Stopwatch::default(), last: 0.0, last_work: None }
     }
 
     /// Shows `status`, if it is time to.
@@ -47,17 +47,19 @@ impl Progress {
         if self.quiet {
             return;
         }
+        let (work, things) = match status.events {
+            0 => (status.particle_steps, "particle-steps"),
+            events => (events, "events"),
+        };
+        // A run that was resumed has not begun with nothing.
+        let last_work = *self.last_work.get_or_insert(work);
         let now = self.watch.seconds();
         let pause = now - self.last;
         if pause < if self.bar.is_some() { BAR_SECONDS } else { LINE_SECONDS } {
             return;
         }
-        let (work, things) = match status.events {
-            0 => (status.particle_steps, "particle-steps"),
-            events => (events, "events"),
-        };
-        let speed = work.saturating_sub(self.last_work) as f64 / pause;
-        (self.last, self.last_work) = (now, work);
+        let speed = work.saturating_sub(last_work) as f64 / pause;
+        (self.last, self.last_work) = (now, Some(work));
         let line = format!(
             "{name}t = {:.4}, {} grains, {:.2} collisions per particle, {:.1} M {things}/s",
             status.time,

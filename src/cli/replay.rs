@@ -5,6 +5,7 @@ mod page;
 mod pictures;
 mod play;
 mod table;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -35,8 +36,11 @@ pub(super) struct ReplayArguments {
     #[command(flatten)]
     pictures: PictureOptions,
 
+    #[command(flatten)]
+    verification: verify::VerifyOptions,
+
     /// Tell what the log holds, and nothing else
-    #[arg(long, conflicts_with_all = ["from", "to", "every", "measures", "source", "series", "profiles", "frames", "report", "speed"])]
+    #[arg(long, conflicts_with_all = ["from", "to", "every", "measures", "source", "series", "profiles", "frames", "report", "speed", "verify"])]
     info: bool,
 
     /// Replace what stands where something is to be written
@@ -109,9 +113,13 @@ const EXAMPLES: &str = "Examples:
   grainflow replay out/heap-hsmc --info                        what the log holds
   grainflow replay out/heap-hsmc --measures pair-correlation   a measure that the run did not take
   grainflow replay out/heap-hsmc --from 3000 --every 4 --frames pictures
-  grainflow replay out/heap-hsmc --speed 200                   in the terminal";
+  grainflow replay out/heap-hsmc --speed 200                   in the terminal
+  grainflow replay out/heap-hsmc --verify                      run it again, compare bit for bit";
 
 pub(super) fn replay(arguments: &ReplayArguments) -> Exit {
+    if arguments.verification.verify {
+        return verify::run_again(&arguments.log, &arguments.verification);
+    }
     let log = log_at(&arguments.log);
     let selection = match arguments.span.selection() {
         Ok(selection) => selection,

@@ -1,6 +1,6 @@
 //! `grainflow run`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
 
 use clap::Args;
@@ -9,14 +9,28 @@ use serde_json::Value;
 use super::input::ScenarioInput;
 use super::progress::Progress;
 use super::{Exit, complain};
-use crate::run::Outcome;
+use crate::run::resume::{ResumeError, Resumption};
+use crate::run::{Outcome, RunError};
 use crate::scenario::model::AnyScenario;
+
+const RESUMING: &str =
+    "With --resume the new folder holds the whole run, to the same bits as without interruption;
+what was resumed stays as it is. --out is by default the folder of the log with -resumed behind.
+--set may give a later end (run.*) or other records (record.*); the rest of the scenario stays.
+
+  grainflow run --resume out/heap-hsmc
+  grainflow run --resume out/shear-hsmc --set run.collisions_per_particle=800";
 
 /// Run a scenario and write a run folder: log, tables, summary, report
 #[derive(Args, Debug)]
+#[command(after_help = RESUMING)]
 pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
+
+    /// Go on from the last complete state of a log; SCENARIO is the log or its run folder
+    #[arg(long)]
+    resume: bool,
 
     /// Folder to write to [default: out/<scenario>-<engine>]
     #[arg(long, value_name = "DIR")]
@@ -41,6 +55,9 @@ pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 static INTERRUPTS: AtomicU32 = AtomicU32::new(0);
 
 pub(super) fn run(arguments: &RunArguments) -> Exit {
+    if arguments.resume {
+        return resume(arguments);
+    }
     let scenario = match arguments.input.load() {
         Ok(scenario) => scenario,
         Err(error) => {
@@ -57,9 +74,54 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
     let result =
         crate::run::run(&scenario, &folder, arguments.force, &STOP, &mut |status| progress.tell(status));
     progress.finish();
+    conclude(result, arguments.quiet)
+}
+
+/// `run --resume`.
+fn resume(arguments: &RunArguments) -> Exit {
+    let input = &arguments.input;
+    let options = [("--engine", input.engine.is_some()), ("--seed", input.seed.is_some())];
+    if let Some((option, _)) = options.into_iter().find(|(_, given)| *given) {
+        complain(&ResumeError::Change(option.to_owned()));
+        return Exit::BadInput;
+    }
+    if let Err(error) = prepare(arguments.threads) {
+        complain(&error);
+        return Exit::RunFailed;
+    }
+    let resumption = match Resumption::open(Path::new(&input.scenario), &input.sets) {
+        Ok(resumption) => resumption,
+        Err(error) => {
+            complain(&error);
+            return Exit::BadInput;
+        }
+    };
+    let mut progress = Progress::new(arguments.quiet);
+    if !arguments.quiet {
+        print!("{}", opening_words(&resumption));
+    }
+    let folder = arguments.out.clone().unwrap_or_else(|| resumption.usual_folder());
+    let result = resumption.run(&folder, arguments.force, &STOP, &mut |status| progress.tell(status));
+    progress.finish();
+    conclude(result, arguments.quiet)
+}
+
+/// Where a run goes on.
+fn opening_words(resumption: &Resumption) -> String {
+    let log = resumption.log().display();
+    let cut_off = resumption.cut_off().map(|sentence| format!("{sentence}\n")).unwrap_or_default();
+    cut_off
+        + &match resumption.time() {
+            Some(time) => format!("goes on from the state at t = {time:.6} in {log}\n"),
+            None => format!("{log} holds no complete state: the run begins again from its scenario\n"),
+        }
+}
+
+/// Says how a run has ended.
+fn conclude(result: Result<Outcome, RunError>, quiet: bool) -> Exit {
     match result {
         Ok(outcome) => {
-            if !arguments.quiet {
+            if !quiet {
                 print!("{}", closing_words(&outcome));
             }
             if outcome.interrupted { Exit::Interrupted } else { Exit::Done }
@@ -103,7 +165,7 @@ fn closing_words(outcome: &Outcome) -> String {
         false => format!("ended by its limit on {}", summary["end_reason"].as_str().unwrap_or("?")),
     };
     text += &format!(
-        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {}, {:.1} s\n",
+        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {}, {:.1} s{}\n",
         summary["scenario"].as_str().unwrap_or("?"),
         summary["engine"].as_str().unwrap_or("?"),
         number("simulated_time").unwrap_or(0.0),
@@ -113,6 +175,7 @@ fn closing_words(outcome: &Outcome) -> String {
             None => format!("{} steps", summary["steps"]),
         },
         number("wall_seconds").unwrap_or(0.0),
+        number("resumed_at").map(|time| format!(" since t = {time:.6}")).unwrap_or_default(),
     );
     for (name, value) in summary.iter() {
         let Some(error) = summary.get(&format!("{name}_standard_error")) else { continue };

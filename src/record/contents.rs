@@ -29,6 +29,21 @@ pub struct RunLog {
     pub cut_off: Option<String>,
 }
 
+/// A part of a run that went by another scenario, before the run was resumed with changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EarlierPart {
+    /// Its scenario as TOML text.
+    pub scenario: String,
+    /// When it ended [time].
+    pub time: f64,
+    /// Steps made up to there.
+    pub steps: u64,
+    /// Events up to there.
+    pub events: u64,
+    /// What was changed then, as on the command line.
+    pub changes: String,
+}
+
 /// Where the grains are at one time, at the precision of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {

@@ -13,6 +13,12 @@ pub enum LogError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// There is a file where a new log should stand.
+    #[error("{} exists already and is left as it is; choose another file with --out", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// Something could not be written; what was flushed before is kept.
     #[error("cannot write to the log {}: {source}; what was recorded before stands in the file", path.display())]
     Write {
@@ -66,7 +72,7 @@ pub enum LogError {
         writer: String,
     },
     /// Bytes of the file are not the ones that were written.
-    #[error("the log {} is damaged near byte {position}: {reason}; copy it again from where it came from", path.display())]
+    #[error("the log {} is damaged near byte {position}: {reason}; copy it again from where it came from, or save what is sound with `grainflow recover`", path.display())]
     Damaged {
         /// The log.
         path: PathBuf,
@@ -74,6 +80,26 @@ pub enum LogError {
         position: u64,
         /// What does not fit.
         reason: String,
+    },
+    /// Messages were taken out of it.
+    #[error("the log {} is not whole: {} missing, though all the bytes around are sound: a part was taken out of the file; copy it again from where it came from, or save what is there with `grainflow recover`", path.display(), numbers(topic, *first, *last))]
+    Missing {
+        /// The log.
+        path: PathBuf,
+        /// Where the messages belong.
+        topic: String,
+        /// The first that is missing, counted from 0.
+        first: u32,
+        /// The last one.
+        last: u32,
+    },
+    /// Messages of a kind that nobody knows here.
+    #[error("the log {} has messages on {topic}, which this is too old to copy: use the version that wrote it, or a later one", path.display())]
+    UnknownTopic {
+        /// The log.
+        path: PathBuf,
+        /// Where the messages belong.
+        topic: String,
     },
     /// The states in it are of the other dimension.
     #[error("the states in the log {} have {found} dimensions, not {wanted}", path.display())]
@@ -90,5 +116,13 @@ pub enum LogError {
 impl LogError {
     pub(crate) fn write(path: &Path, source: impl Into<mcap::McapError>) -> Self {
         LogError::Write { path: path.to_owned(), source: source.into() }
+    }
+}
+
+/// The messages of `topic` from `first` to `last` as the subject of a sentence.
+pub(crate) fn numbers(topic: &str, first: u32, last: u32) -> String {
+    match last.saturating_sub(first) {
+        0 => format!("message {first} of {topic} is"),
+        _ => format!("messages {first} to {last} of {topic} are"),
     }
 }

@@ -5,9 +5,12 @@
 //! and `/state` (saved states). Metadata `grainflow` and the attachment `scenario.toml` stand
 //! before the first message. Message n of `/particles` belongs to message n of `/measures`.
 
+pub(crate) mod checkpoints;
 pub mod contents;
+pub(crate) mod continuation;
 pub mod error;
 pub mod frame;
+pub mod history;
 pub mod index;
 pub mod overview;
 pub mod reader;
@@ -20,3 +23,5 @@ pub mod time_scale;
 pub mod walk;
 mod walls;
 pub mod writer;
+
+pub(crate) use schema::RECOVERED_KEY;

@@ -9,9 +9,10 @@ use prost::Message;
 use super::contents::RunLog;
 use super::error::LogError;
 use super::frame::frame_of;
+use super::saved::Assembly;
 use super::scan::{Event, Fault, scan};
 use super::schema::foxglove::{PointCloud, SceneUpdate};
-use super::schema::grainflow::Profile as ProfileMessage;
+use super::schema::grainflow::{Profile as ProfileMessage, State};
 use super::schema::measures::{MeasuresMessage, columns_of};
 use super::schema::topic;
 use super::schema::units::dimension_of;
@@ -43,7 +44,7 @@ pub fn read_origin(path: &Path) -> Result<(BTreeMap<String, String>, String), Lo
         match event {
             Event::Metadata(found) => metadata = found,
             Event::Scenario(found) => scenario = found,
-            Event::Channel { .. } | Event::Message { .. } => {}
+            _ => {}
         }
         Ok(())
     })?;
@@ -70,6 +71,28 @@ pub fn last_state<V: Vector>(path: &Path) -> Result<Option<SavedState<'static, V
     Ok(last)
 }
 
+/// The same, with the number of its first part in the sequence of the states.
+pub(crate) fn last_state_and_place<V: Vector>(path: &Path) -> Result<Option<Placed<V>>, LogError> {
+    let (mut last, mut first_part) = (None, 0);
+    let mut assembly = Assembly::<V>::default();
+    scan(path, &mut |event| {
+        if let Event::Message { topic: topic::STATE, sequence, data, .. } = event {
+            let part = State::decode(data).map_err(Fault::damage)?;
+            if part.first_row == 0 {
+                first_part = sequence;
+            }
+            if let Some(state) = assembly.add(&part).map_err(Fault::damage)? {
+                last = Some((state, first_part));
+            }
+        }
+        Ok(())
+    })?;
+    Ok(last)
+}
+
+/// A state and the number of its first part in the sequence of the states.
+pub(crate) type Placed<V> = (SavedState<'static, V>, u32);
+
 /// The contents so far.
 #[derive(Default)]
 struct Contents {
@@ -92,7 +115,7 @@ impl Contents {
                     .ok_or_else(|| Fault::damage("the columns of the series have no proper units"))?;
                 (self.numbers, self.log.columns) = columns.into_iter().unzip();
             }
-            Event::Message { topic, sequence, data } => match topic {
+            Event::Message { topic, sequence, data, .. } => match topic {
                 topic::MEASURES => self.measures(sequence, data)?,
                 topic::PARTICLES if self.without_frames => {}
                 topic::PARTICLES => self.frame(sequence, data)?,
@@ -102,7 +125,7 @@ impl Contents {
                 }
                 _ => {}
             },
-            Event::Channel { .. } => {}
+            _ => {}
         }
         Ok(())
     }
@@ -131,7 +154,7 @@ impl Contents {
     }
 }
 
-fn profile(data: &[u8]) -> Result<Profile, Fault> {
+pub(super) fn profile(data: &[u8]) -> Result<Profile, Fault> {
     let message = ProfileMessage::decode(data).map_err(Fault::damage)?;
     let mut profile =
         Profile { name: message.name, time: message.time, columns: Vec::new(), values: Vec::new() };

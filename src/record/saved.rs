@@ -114,6 +114,7 @@ fn add_sums<V: Vector>(message: &mut State, state: &SavedState<'_, V>) {
     message.held_until = Some(state.held_until);
     message.recordings = state.recordings;
     message.states = state.states;
+    message.invalid_states = state.invalid_states;
     message.beginning = Some(BeginningMessage {
         particles: state.beginning.particles,
         kinetic_energy: Some(state.beginning.kinetic_energy),
@@ -152,6 +153,7 @@ fn sums_of<V: Vector>(part: &State) -> Option<SavedState<'static, V>> {
         beginning: beginning_of(part.beginning.as_ref()?)?,
         samples: part.samples.clone(),
         memories: part.memories.iter().map(|memory| (memory.name.clone(), memory.values.clone())).collect(),
+        invalid_states: part.invalid_states,
     })
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek};
+use std::ops::Range;
 use std::path::Path;
 
 use mcap::records::Record;
@@ -23,10 +24,16 @@ pub(crate) enum Event<'a> {
     Metadata(BTreeMap<String, String>),
     /// The scenario as TOML text.
     Scenario(String),
+    /// Where the run was resumed with changes.
+    Resumption(BTreeMap<String, String>),
+    /// The scenario up to there, as TOML text.
+    EarlierScenario(String),
     /// A channel, its description and its own metadata.
     Channel { topic: &'a str, description: &'a [u8], metadata: &'a BTreeMap<String, String> },
     /// A message.
-    Message { topic: &'a str, sequence: u32, data: &'a [u8] },
+    Message { topic: &'a str, sequence: u32, log_time: u64, data: &'a [u8] },
+    /// Messages of a recovered log that were lost, before the one that comes next.
+    Hole { topic: &'a str, missing: Range<u32> },
 }
 
 /// Gives every event of the log at `path` to `visit`, which says what is wrong with it, if anything. A
@@ -77,6 +84,10 @@ pub(crate) enum Fault {
     Newer(String, String),
     /// States of another dimension: what they have, what was wanted.
     Dimension(u32, usize),
+    /// Messages are missing: their topic and their places in the sequence.
+    Missing(String, Range<u32>),
+    /// Another log cannot be written.
+    Other(LogError),
     /// Anything else.
     Damage(String),
 }
@@ -92,6 +103,10 @@ impl Fault {
             Fault::End | Fault::Enough | Fault::NoHeader => LogError::NoHeader { path },
             Fault::Newer(found, writer) => LogError::Newer { path, found, writer },
             Fault::Dimension(found, wanted) => LogError::Dimension { path, found, wanted },
+            Fault::Missing(topic, missing) => {
+                LogError::Missing { path, topic, first: missing.start, last: missing.end - 1 }
+            }
+            Fault::Other(error) => error,
             Fault::Damage(reason) => LogError::Damaged { path, position, reason },
         }
     }
@@ -146,6 +161,10 @@ struct Progress {
     schemas: BTreeMap<u16, Vec<u8>>,
     /// Topics by number of the channel.
     topics: BTreeMap<u16, String>,
+    /// The place in the sequence that comes next, by number of the channel.
+    places: BTreeMap<u16, u32>,
+    /// Whether it is a recovered log, in which messages may be missing.
+    recovered: bool,
 }
 
 impl Progress {
@@ -162,11 +181,17 @@ impl Progress {
             Record::Metadata(record) if record.name == schema::METADATA => {
                 check_format(&record.metadata)?;
                 self.header = true;
+                self.recovered = record.metadata.contains_key(schema::RECOVERED_KEY);
                 visit(Event::Metadata(record.metadata))
             }
+            Record::Metadata(record) if record.name == schema::RESUMPTION => {
+                visit(Event::Resumption(record.metadata))
+            }
             Record::Attachment { header, data, .. } if header.name == schema::SCENARIO => {
-                let text = String::from_utf8(data.into_owned()).map_err(Fault::damage)?;
-                visit(Event::Scenario(text))
+                visit(Event::Scenario(text_of(&data)?))
+            }
+            Record::Attachment { header, data, .. } if header.name.starts_with(schema::EARLIER_SCENARIO) => {
+                visit(Event::EarlierScenario(text_of(&data)?))
             }
             Record::Schema { header, data } => {
                 self.schemas.insert(header.id, data.into_owned());
@@ -186,7 +211,16 @@ impl Progress {
                 }
                 let topic = self.topics.get(&header.channel_id);
                 let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
-                visit(Event::Message { topic, sequence: header.sequence, data: &data })
+                let next = self.places.entry(header.channel_id).or_insert(0);
+                if let Some(missing) = missing(topic, *next, header.sequence)? {
+                    if !self.recovered {
+                        return Err(Fault::Missing(topic.clone(), missing));
+                    }
+                    visit(Event::Hole { topic, missing })?;
+                }
+                *next = header.sequence.saturating_add(1);
+                let (sequence, log_time) = (header.sequence, header.log_time);
+                visit(Event::Message { topic, sequence, log_time, data: &data })
             }
             Record::DataEnd(_) => {
                 self.data_ended = true;
@@ -214,6 +248,18 @@ impl Progress {
             ))),
         }
     }
+}
+
+/// The places between the one that comes `next` and the one that came, if there are any.
+fn missing(topic: &str, next: u32, came: u32) -> Result<Option<Range<u32>>, Fault> {
+    if came < next {
+        return Err(Fault::Damage(format!("message {came} of {topic} comes again, or too late")));
+    }
+    Ok((came > next).then_some(next..came))
+}
+
+fn text_of(data: &[u8]) -> Result<String, Fault> {
+    String::from_utf8(data.to_vec()).map_err(Fault::damage)
 }
 
 pub(crate) fn check_format(metadata: &BTreeMap<String, String>) -> Result<(), Fault> {

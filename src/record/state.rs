@@ -40,6 +40,8 @@ pub struct SavedState<'a, V: Vector> {
     pub memories: Vec<(String, Vec<f64>)>,
     /// What the run began with.
     pub beginning: Beginning<V>,
+    /// Overlaps found by audits so far; `None` where the engine allows overlap.
+    pub invalid_states: Option<u64>,
 }
 
 /// What a run began with, after equilibration.

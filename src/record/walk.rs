@@ -24,11 +24,11 @@ pub fn each_frame(path: &Path, visit: &mut dyn FnMut(u32, Frame) -> ControlFlow<
     let mut recording = None;
     scan(path, &mut |event| {
         match event {
-            Event::Message { topic: topic::MEASURES, sequence, data } => {
+            Event::Message { topic: topic::MEASURES, sequence, data, .. } => {
                 let message = MeasuresMessage::decode(data, &[TIME]).map_err(Fault::damage)?;
                 recording = Some((sequence, message.values[0], message.grains));
             }
-            Event::Message { topic: topic::PARTICLES, sequence, data } => {
+            Event::Message { topic: topic::PARTICLES, sequence, data, .. } => {
                 let Some((_, time, grains)) = recording.filter(|one| one.0 == sequence) else {
                     return Ok(());
                 };

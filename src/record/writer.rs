@@ -9,7 +9,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, WriteOptions};
 use prost::Message;
 
-use super::contents::{Frame, Walls};
+use super::contents::{EarlierPart, Frame, Walls};
 use super::error::LogError;
 use super::frame::point_cloud;
 use super::saved;
@@ -30,11 +30,13 @@ pub struct LogHeader {
     pub metadata: BTreeMap<String, String>,
     /// The scenario as TOML text.
     pub scenario: String,
+    /// What ran by other scenarios before, in the order of time.
+    pub earlier: Vec<EarlierPart>,
     /// Columns of the series; the first is `time`.
     pub columns: Vec<Column>,
     /// The box and its walls.
     pub walls: Option<Walls>,
-    /// When the run begins: 0, or where it was resumed [time].
+    /// When the log begins [time].
     pub start: f64,
     /// Ticks per unit of time, from [`super::time_scale::time_scale`].
     pub time_scale: u64,
@@ -92,14 +94,15 @@ impl LogWriter {
     fn begin(path: &Path, file: BufWriter<File>, header: &LogHeader) -> mcap::McapResult<Self> {
         let mut writer = options().create(file)?;
         writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
+        for part in &header.earlier {
+            writer.write_metadata(&resumption(part))?;
+        }
         let start = tick(header.start, header.time_scale);
-        writer.attach(&mcap::Attachment {
-            log_time: start,
-            create_time: start,
-            name: schema::SCENARIO.to_owned(),
-            media_type: "application/toml".to_owned(),
-            data: header.scenario.as_bytes().into(),
-        })?;
+        writer.attach(&scenario(start, schema::SCENARIO.to_owned(), &header.scenario))?;
+        for (k, part) in header.earlier.iter().enumerate() {
+            let name = format!("{}{}.toml", schema::EARLIER_SCENARIO, k + 1);
+            writer.attach(&scenario(start, name, &part.scenario))?;
+        }
         let mut log = LogWriter {
             path: path.to_owned(),
             time_scale: header.time_scale,
@@ -158,6 +161,25 @@ impl LogWriter {
             }
             log.writer.flush()
         })
+    }
+
+    /// Writes a message of an older log as it stands there, at its `tick`.
+    pub(crate) fn copy(
+        &mut self,
+        topic: &str,
+        sequence: u32,
+        tick: u64,
+        data: &[u8],
+    ) -> Result<(), LogError> {
+        let channel = match topic {
+            topic::MEASURES => &mut self.measures,
+            topic::PARTICLES => &mut self.particles,
+            topic::PROFILES => &mut self.profiles,
+            topic::STATE => &mut self.states,
+            _ => return Err(LogError::UnknownTopic { path: self.path.clone(), topic: topic.to_owned() }),
+        };
+        channel.sequence = sequence;
+        channel.write(&mut self.writer, tick, data).map_err(|source| LogError::write(&self.path, source))
     }
 
     /// Hands everything written so far to the system.
@@ -230,7 +252,25 @@ fn metadata(header: &LogHeader) -> BTreeMap<String, String> {
     let mut metadata = header.metadata.clone();
     metadata.insert(schema::FORMAT_KEY.to_owned(), schema::FORMAT.to_string());
     metadata.insert(schema::TIME_SCALE_KEY.to_owned(), header.time_scale.to_string());
+    metadata.insert(schema::DIGEST_KEY.to_owned(), schema::digest(&header.scenario));
     metadata
+}
+
+/// What says where an earlier part ended, and what was changed then.
+fn resumption(part: &EarlierPart) -> Metadata {
+    let entries = [
+        ("time", format!("{:?}", part.time)),
+        ("steps", part.steps.to_string()),
+        ("events", part.events.to_string()),
+        ("changes", part.changes.clone()),
+    ];
+    let metadata = entries.map(|(key, value)| (key.to_owned(), value)).into();
+    Metadata { name: schema::RESUMPTION.to_owned(), metadata }
+}
+
+fn scenario(time: u64, name: String, text: &str) -> mcap::Attachment<'_> {
+    let media_type = "application/toml".to_owned();
+    mcap::Attachment { log_time: time, create_time: time, name, media_type, data: text.as_bytes().into() }
 }
 
 fn channel<M: Described>(

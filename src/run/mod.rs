@@ -2,9 +2,15 @@
 
 pub mod beginning;
 pub mod folder;
+mod looks;
 mod recorder;
+mod rerun;
+pub mod resume;
 pub(crate) mod series;
+mod state_difference;
 mod summary;
+mod timetable;
+pub mod verify;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -131,7 +137,7 @@ fn run_in<V: Vector>(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    let mut watch = Stopwatch::default();
+    let watch = Stopwatch::default();
     let gas = initial_gas(scenario)?;
     let folder = RunFolder::claim(folder, force)?;
     let mut simulation = match Simulation::start(scenario, gas, &mut Stopwatch::default()) {
@@ -141,26 +147,52 @@ fn run_in<V: Vector>(
             return Err(RunError::Equilibration(error));
         }
     };
-    let log = folder.path().join("log.mcap");
-    let mut recorder = Recorder::create(&log, &mut simulation)?;
-    let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
-    watch.stop();
-    let ending = match ended {
-        Ok(ending) => ending,
-        Err(StepError::Log(error)) => return Err(error.into()),
-        Err(StepError::Simulation(source)) => {
-            recorder.finish_after_failure()?;
-            return Err(RunError::Simulation { source, log });
-        }
-    };
-    let recorded = recorder.finish(&mut simulation)?;
-    simulation.audit();
-    let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
-    series::write_tables(folder.path(), scenario, &recorded)?;
-    write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
-    write_text(&folder.path().join("report.html"), &report::render(&read_log(&log)?, &summary))?;
-    let folder = folder.settle()?;
-    Ok(Outcome { folder, summary, interrupted: ending == Ending::Interrupted, laps: watch.laps().to_vec() })
+    let recorder = Recorder::create(&log_of(&folder), &mut simulation)?;
+    Run { folder, simulation, recorder, watch }.end_and_write(stop, tell)
+}
+
+/// Where the log of a run in `folder` stands.
+fn log_of(folder: &RunFolder) -> PathBuf {
+    folder.path().join("log.mcap")
+}
+
+/// A run that has begun, or goes on.
+struct Run<'s, V: Vector> {
+    folder: RunFolder,
+    simulation: Simulation<'s, V>,
+    recorder: Recorder,
+    watch: Stopwatch,
+}
+
+impl<V: Vector> Run<'_, V> {
+    /// Goes on until an end is reached or `stop` turns true, and writes all files.
+    fn end_and_write(self, stop: &AtomicBool, tell: Listener<'_>) -> Result<Outcome, RunError> {
+        let Run { folder, mut simulation, mut recorder, mut watch } = self;
+        let log = log_of(&folder);
+        let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
+        watch.stop();
+        let ending = match ended {
+            Ok(ending) => ending,
+            Err(StepError::Log(error)) => return Err(error.into()),
+            Err(StepError::Simulation(source)) => {
+                recorder.finish_after_failure()?;
+                return Err(RunError::Simulation { source, log });
+            }
+        };
+        let recorded = recorder.finish(&mut simulation)?;
+        simulation.audit();
+        let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
+        series::write_tables(folder.path(), simulation.scenario(), &recorded)?;
+        write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
+        write_text(&folder.path().join("report.html"), &report::render(&read_log(&log)?, &summary))?;
+        let folder = folder.settle()?;
+        Ok(Outcome {
+            folder,
+            summary,
+            interrupted: ending == Ending::Interrupted,
+            laps: watch.laps().to_vec(),
+        })
+    }
 }
 
 /// Why a step or its recording failed.
@@ -177,7 +209,8 @@ fn go_on<V: Vector>(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Ending, StepError> {
-    use crate::engine::Laps;
+    use crate::engine::{Horizon, Laps};
+    let mut stops = false;
     loop {
         watch.start("recording");
         recorder.record_if_due(simulation).map_err(StepError::Log)?;
@@ -185,10 +218,15 @@ fn go_on<V: Vector>(
         if let Some(reason) = simulation.end_reason() {
             return Ok(Ending::Reached(reason));
         }
-        if stop.load(Relaxed) {
+        if stops || stop.load(Relaxed) && !simulation.is_event_driven() {
             return Ok(Ending::Interrupted);
         }
-        let horizon = recorder.horizon(simulation);
+        let mut horizon = recorder.horizon(simulation);
+        if stop.load(Relaxed) {
+            // Without steps a run stops at a time, which a re-run will find again.
+            let time = simulation.gas().time().next_up();
+            (stops, horizon) = (true, horizon.min(Horizon { time, ..Horizon::NONE }));
+        }
         simulation.advance(watch, horizon).map_err(StepError::Simulation)?;
     }
 }

@@ -4,31 +4,31 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::NUMERICS;
+use super::looks::Looks;
+use super::timetable::Timetable;
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
-use crate::observe::measure::{Column, Dimension, Figure, Profile};
-use crate::record::contents::Walls;
+use crate::observe::measure::{Column, Figure, Profile};
+use crate::record::RECOVERED_KEY;
+use crate::record::contents::{EarlierPart, Walls};
+use crate::record::continuation::copy_before;
 use crate::record::error::LogError;
 use crate::record::frame::frame;
+use crate::record::history::History;
 use crate::record::time_scale::time_scale;
 use crate::record::writer::{LogHeader, LogWriter, Recording};
-use crate::scenario::model::{RecordPlan, Scenario, Spacing};
+use crate::scenario::model::{InitialPositions, Scenario, Spacing};
 use crate::simulation::Simulation;
-use crate::simulation::schedule::Spread;
 use crate::space::Vector;
 
 /// Writes the log and keeps the series for the tables.
 pub(super) struct Recorder {
     writer: LogWriter,
-    frames: Spread,
-    states: Spread,
-    recordings: u64,
-    states_saved: u64,
+    timetable: Timetable,
+    looks: Looks,
     /// Time, steps and events at the last recording.
     last_recorded: Option<(f64, u64, u64)>,
     recorded: Recorded,
-    /// `[measure]`: whether its series and profiles are stored.
-    stored: Vec<bool>,
 }
 
 /// What was recorded, for the tables.
@@ -45,46 +45,64 @@ pub(super) struct Recorded {
 }
 
 impl Recorder {
-    /// Begins the log of a run that is about to start.
+    /// Begins the log of a run that is about to start. Where grains come from another log, they are saved first: the
+    /// log can do without the other.
     pub(super) fn create<V: Vector>(
         path: &Path,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Self, LogError> {
         let scenario = simulation.scenario();
-        let plan = &scenario.record;
-        let (measures, _) = simulation.observation();
-        let is_stored =
-            |name: &str| plan.measures.as_ref().is_none_or(|names| names.iter().any(|n| n == name));
-        let stored: Vec<bool> = measures.iter().map(|measure| is_stored(measure.name())).collect();
-        let mut columns =
-            vec![Column { name: "time".to_owned(), unit: Dimension { time: 1, ..Dimension::default() } }];
-        for (measure, _) in measures.iter().zip(&stored).filter(|(_, stored)| **stored) {
-            columns.extend(measure.columns());
-        }
-        let header = LogHeader {
-            metadata: metadata(scenario),
-            scenario: scenario.source_text.clone(),
-            columns: columns.clone(),
-            walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
-            start: 0.0,
-            time_scale: expected_time_scale(scenario),
-        };
-        Ok(Recorder {
-            writer: LogWriter::create(path, &header)?,
-            frames: spread(plan),
-            states: Spread::Inside(plan.states),
-            recordings: 0,
-            states_saved: 0,
+        let looks = Looks::of(simulation);
+        let writer = LogWriter::create(path, &header(scenario, &looks))?;
+        let mut recorder = Recorder {
+            writer,
+            timetable: Timetable::new(&scenario.record),
+            recorded: Recorded { columns: looks.columns.clone(), ..Recorded::default() },
+            looks,
             last_recorded: None,
-            recorded: Recorded { columns, ..Recorded::default() },
-            stored,
-        })
+        };
+        if matches!(scenario.initial.positions, InitialPositions::Log(_)) {
+            recorder.save(simulation)?;
+        }
+        Ok(recorder)
+    }
+
+    /// Begins the log of a run that goes on, as [`Origin`] says, with everything that was recorded before.
+    pub(super) fn resume<V: Vector>(
+        path: &Path,
+        simulation: &mut Simulation<'_, V>,
+        timetable: Timetable,
+        origin: &Origin<'_>,
+    ) -> Result<Self, LogError> {
+        let looks = Looks::of(simulation);
+        let mut header = header(simulation.scenario(), &looks);
+        header.earlier.clone_from(&origin.earlier);
+        header.time_scale = origin.history.time_scale().unwrap_or(header.time_scale);
+        if origin.history.has_holes {
+            let lost = origin.history.value(RECOVERED_KEY).to_owned();
+            header.metadata.insert(RECOVERED_KEY.to_owned(), lost);
+        }
+        let mut writer = LogWriter::create(path, &header)?;
+        let copied = copy_before(origin.log, origin.state, &mut writer, &looks.columns)?;
+        let is_here = copied.series.last().is_some_and(|row| row[0] == simulation.gas().time())
+            && copied.last_hash == state_hash(simulation.gas());
+        let recorded = Recorded {
+            columns: looks.columns.clone(),
+            series: copied.series,
+            profiles: copied.profiles,
+            figures: Vec::new(),
+        };
+        let last_recorded = is_here.then(|| place(simulation));
+        let mut recorder = Recorder { writer, timetable, looks, last_recorded, recorded };
+        if origin.keeps_state {
+            recorder.save(simulation)?;
+        }
+        Ok(recorder)
     }
 
     /// Where the next recording or saved state is due, for an engine that can stop there.
     pub(super) fn horizon<V: Vector>(&self, simulation: &Simulation<'_, V>) -> Horizon {
-        let recording = simulation.horizon_of(self.frames, self.recordings);
-        recording.min(simulation.horizon_of(self.states, self.states_saved))
+        self.timetable.horizon(simulation)
     }
 
     /// Makes the recording and saves the state that are due, if any.
@@ -92,29 +110,30 @@ impl Recorder {
         &mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<(), LogError> {
-        let (time, progress) = (simulation.gas().time(), simulation.progress());
-        if self.frames.is_due(self.recordings, time, progress) {
+        if self.timetable.wants_recording(simulation) {
             self.record(simulation)?;
-            self.recordings = self.frames.next(time, progress).max(self.recordings + 1);
+            self.timetable.recorded(simulation);
         }
-        if self.states.is_due(self.states_saved, time, progress) {
-            self.writer.state(&simulation.saved_state(self.recordings, self.states_saved))?;
-            self.states_saved = self.states.next(time, progress);
+        if self.timetable.wants_state(simulation) {
+            self.save(simulation)?;
+            self.timetable.state_saved(simulation);
         }
         Ok(())
     }
 
-    /// Records the end, the profiles of the whole run and the last state, and ends the log.
+    /// Saves the last state, records the end and the profiles of the whole run, and ends the log. What stands before that
+    /// state is what stands there in the log of a run that goes on.
     pub(super) fn finish<V: Vector>(
         mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Recorded, LogError> {
+        self.save(simulation)?;
         if self.last_recorded != Some(place(simulation)) {
             self.record(simulation)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
         let (measures, snapshot) = simulation.observation();
-        for (measure, &stored) in measures.iter().zip(&self.stored) {
+        for (measure, &stored) in measures.iter().zip(&self.looks.stored) {
             let (profiles, figures) = measure.conclusion(&snapshot, from);
             self.recorded.figures.extend(figures);
             for profile in profiles.into_iter().filter(|_| stored) {
@@ -122,7 +141,6 @@ impl Recorder {
                 self.recorded.profiles.push(profile);
             }
         }
-        self.writer.state(&simulation.saved_state(self.recordings, self.states_saved))?;
         self.writer.finish()?;
         Ok(self.recorded)
     }
@@ -134,26 +152,49 @@ impl Recorder {
 
     fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
         let most_points = simulation.scenario().record.points.map(|points| points as usize);
-        let hash = state_hash(simulation.gas());
-        let place = place(simulation);
-        let (measures, snapshot) = simulation.observation();
-        let mut values = vec![snapshot.gas.time()];
-        let mut profiles = Vec::new();
-        for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
-            values.extend(measure.values(&snapshot));
-            profiles.extend(measure.profiles(&snapshot));
-        }
-        let frame = frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+        let (values, profiles) = self.looks.take(simulation);
+        let gas = simulation.gas();
         self.writer.recording(&Recording {
             values: &values,
-            state_hash: &hash,
+            state_hash: &state_hash(gas),
             profiles: &profiles,
-            frame: &frame,
+            frame: &frame(gas.time(), gas.columns(), most_points),
         })?;
         self.recorded.series.push(values);
         self.recorded.profiles.extend(profiles);
-        self.last_recorded = Some(place);
+        self.last_recorded = Some(place(simulation));
         Ok(())
+    }
+
+    fn save<V: Vector>(&mut self, simulation: &Simulation<'_, V>) -> Result<(), LogError> {
+        let Timetable { recordings, saved, .. } = self.timetable;
+        self.writer.state(&simulation.saved_state(recordings, saved))
+    }
+}
+
+/// Where a run that goes on comes from.
+pub(super) struct Origin<'a> {
+    /// The log.
+    pub(super) log: &'a Path,
+    /// What it says of its run.
+    pub(super) history: &'a History,
+    /// The number of its state in the sequence of the states.
+    pub(super) state: u32,
+    /// Whether the new log begins with that state; else it stands there only where it is due.
+    pub(super) keeps_state: bool,
+    /// What ran by other scenarios before.
+    pub(super) earlier: Vec<EarlierPart>,
+}
+
+fn header<V: Vector>(scenario: &Scenario<V>, looks: &Looks) -> LogHeader {
+    LogHeader {
+        metadata: metadata(scenario),
+        scenario: scenario.source_text.clone(),
+        earlier: Vec::new(),
+        columns: looks.columns.clone(),
+        walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
+        start: 0.0,
+        time_scale: expected_time_scale(scenario),
     }
 }
 
@@ -161,15 +202,6 @@ impl Recorder {
 fn place<V: Vector>(simulation: &Simulation<'_, V>) -> (f64, u64, u64) {
     let totals = simulation.totals();
     (simulation.gas().time(), totals.steps, totals.events.all)
-}
-
-fn spread(plan: &RecordPlan) -> Spread {
-    match plan.spacing {
-        Spacing::Frames(number) => Spread::Even(number),
-        Spacing::LogFrames(number) => Spread::Logarithmic(number),
-        Spacing::Every(interval) => Spread::Every(interval),
-        Spacing::Ends => Spread::Start,
-    }
 }
 
 /// Ticks per time from what the scenario says of its length and of the pauses between recordings.

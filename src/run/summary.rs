@@ -12,7 +12,7 @@ use crate::space::Vector;
 use crate::stopwatch::{Stopwatch, peak_memory_bytes};
 
 /// Keys of numbers that every summary has, whatever the scenario measures; null where they do not apply.
-pub const NUMBERS: [&str; 34] = [
+pub const NUMBERS: [&str; 35] = [
     "dimension",
     "particles_initial",
     "particles_final",
@@ -43,6 +43,7 @@ pub const NUMBERS: [&str; 34] = [
     "annulled_events",
     "cured_share",
     "invalid_states",
+    "resumed_at",
     "wall_seconds",
     "particle_steps_per_second",
     "events_per_second",
@@ -162,13 +163,17 @@ fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) ->
         .filter(|(verb, _)| !NOT_ADVANCING.contains(verb))
         .map(|(_, seconds)| seconds)
         .sum();
+    // Of a run that was resumed, only the work after that was done here.
     let totals = simulation.totals();
+    let resumed = simulation.resumed();
+    let (earlier_steps, earlier_events) = resumed.map_or((0, 0), |at| (at.particle_steps, at.events));
     let per_second = |count: u64| Some(count as f64 / advancing).filter(|rate| rate.is_finite());
     let (steps, events) = match simulation.is_event_driven() {
-        true => (None, per_second(totals.events.all)),
-        false => (per_second(totals.particle_steps), None),
+        true => (None, per_second(totals.events.all - earlier_events)),
+        false => (per_second(totals.particle_steps - earlier_steps), None),
     };
     object(json!({
+        "resumed_at": resumed.map(|at| at.time),
         "wall_seconds": watch.seconds(),
         "advancing_seconds": advancing,
         "particle_steps_per_second": steps,

@@ -142,7 +142,9 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
 
 /// Size of the log before compression [bytes].
 pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let states = f64::from(scenario.record.states) + 1.0;
+    let spread = f64::from(scenario.record.states);
+    let every = scenario.record.state_every;
+    let states = every.zip(duration(scenario)).map_or(spread, |(every, duration)| duration / every) + 1.0;
     recordings(scenario).made * (POINT * mean_points(scenario) + RECORD)
         + states * final_grains(scenario) * grain_bytes::<V>()
 }

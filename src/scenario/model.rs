@@ -189,6 +189,8 @@ pub struct RecordPlan {
     pub measures: Option<Vec<String>>,
     /// Full-precision states during the run, beside the one at the end.
     pub states: u32,
+    /// One every so much time instead, beginning at 0 [time].
+    pub state_every: Option<f64>,
     /// Steady figures are taken from this time on [time]; `None` for the second half.
     pub from: Option<f64>,
 }

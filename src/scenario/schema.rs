@@ -72,7 +72,8 @@ pub(super) const SOURCE: &[&str] = &["count", "rate", "position", "width", "heig
 /// `[run]`.
 pub(super) const RUN: &[&str] = &["time", "steps", "collisions_per_particle", "rest"];
 /// `[record]`.
-pub(super) const RECORD: &[&str] = &["frames", "every", "spacing", "measures", "points", "states", "from"];
+pub(super) const RECORD: &[&str] =
+    &["frames", "every", "spacing", "measures", "points", "states", "state_every", "from"];
 /// `[units]`.
 pub(super) const UNITS: &[&str] = &["length", "mass", "time"];
 
@@ -105,6 +106,7 @@ pub(super) const EITHER_OR: &[(&str, &[&[&str]])] = &[
     ("particles", &[&["count"], &["volume_fraction"]]),
     ("particles", &[&["diameter", "mass"], &["species"]]),
     ("record", &[&["frames", "spacing"], &["every"]]),
+    ("record", &[&["states"], &["state_every"]]),
     ("engine.time_step", &[&["fixed"], &["collisions_per_particle"], &["crossing"]]),
     ("engine.impact_parameter", &[&["collisions_per_particle", "c"], &["table"]]),
     ("engine.hsmc.entry_probability", &[&["volume_fraction", "probability"], &["table"]]),

@@ -49,6 +49,18 @@ pub struct Simulation<'s, V: Vector> {
     samples: Vec<u64>,
     beginning: Beginning<V>,
     invalid_states: Option<u64>,
+    resumed: Option<Resumed>,
+}
+
+/// Where a run was resumed: what stands in its sums and is the work of others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resumed {
+    /// When [time].
+    pub time: f64,
+    /// Σ N over the steps before.
+    pub particle_steps: u64,
+    /// Events before.
+    pub events: u64,
 }
 
 impl<'s, V: Vector> Simulation<'s, V> {
@@ -83,13 +95,36 @@ impl<'s, V: Vector> Simulation<'s, V> {
         if let Some(pouring) = &mut simulation.pouring {
             pouring.restore(simulation.totals.poured, saved.last_poured, saved.held_until);
         }
-        simulation.samples = saved.samples;
-        for measure in &mut simulation.measures {
-            if let Some((_, memory)) = saved.memories.iter().find(|(name, _)| name == measure.name()) {
-                measure.recall(memory);
-            }
+        simulation.invalid_states = saved.invalid_states;
+        simulation.resumed = Some(Resumed {
+            time: simulation.gas.time(),
+            particle_steps: simulation.totals.particle_steps,
+            events: simulation.totals.events.all,
+        });
+        // A measure that did not watch before begins now.
+        simulation.spread_samples();
+        for (measure, taken) in simulation.measures.iter_mut().zip(&mut simulation.samples) {
+            let place = saved.memories.iter().position(|(name, _)| name == measure.name());
+            let Some(place) = place else { continue };
+            measure.recall(&saved.memories[place].1);
+            *taken = saved.samples.get(place).copied().unwrap_or(*taken);
         }
         simulation
+    }
+
+    /// The same for a run of which limits or records have changed: samples are spread over its new length.
+    pub fn resume_changed(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Self {
+        let mut simulation = Self::resume(scenario, saved);
+        simulation.spread_samples();
+        simulation
+    }
+
+    /// Takes all samples that were due up to now as taken.
+    fn spread_samples(&mut self) {
+        let (time, progress) = (self.gas.time(), self.progress());
+        for (measure, taken) in self.measures.iter().zip(&mut self.samples) {
+            *taken = sampling(measure.cadence()).map_or(0, |spread| spread.next(time, progress));
+        }
     }
 
     fn assemble(scenario: &'s Scenario<V>, gas: Gas<V>, beginning: Beginning<V>) -> Self {
@@ -105,6 +140,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             measures,
             beginning,
             invalid_states: None,
+            resumed: None,
         }
     }
 
@@ -219,6 +255,10 @@ impl<'s, V: Vector> Simulation<'s, V> {
     pub fn is_event_driven(&self) -> bool {
         self.engine.excludes_overlap()
     }
+    /// Where the run was resumed, if it was.
+    pub fn resumed(&self) -> Option<Resumed> {
+        self.resumed
+    }
     /// The measures, to be asked for values, profiles and conclusions, with what they look at.
     pub fn observation(&mut self) -> (&mut [Box<dyn Measure<V>>], Snapshot<'_, V>) {
         (&mut self.measures, Snapshot { gas: &self.gas, totals: &self.totals })
@@ -240,6 +280,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             samples: self.samples.clone(),
             memories: self.measures.iter().map(|m| (m.name().to_owned(), m.memory())).collect(),
             beginning: self.beginning,
+            invalid_states: self.invalid_states,
         }
     }
 }

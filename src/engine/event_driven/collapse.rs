@@ -95,6 +95,16 @@ impl CollapseWatch {
         (collisions >= Self::COLLISIONS).then_some(collisions)
     }
 
+    /// The window as numbers: when it began, then rows and counts of the grains in it.
+    pub(super) fn state(&self) -> (f64, impl Iterator<Item = u32>) {
+        (self.start, self.seen.iter().flat_map(|&(row, before)| [row, before]))
+    }
+
+    /// The window that began at `start` [time], with these grains in it.
+    pub(super) fn restored(start: f64, seen: Vec<(u32, u32)>) -> Self {
+        CollapseWatch { start, seen }
+    }
+
     /// Forgets the window: rows have been renumbered.
     pub(super) fn forget(&mut self) {
         *self = Self::new();

@@ -3,6 +3,7 @@
 use super::body::{Body, Contact, Event, Face, NONE, Plan};
 use super::calendar::Entry;
 use super::cells::Cells;
+use super::collapse::CollapseWatch;
 use super::laws::Laws;
 use super::lists::Lists;
 use super::rules::Structure;
@@ -27,6 +28,14 @@ impl Tape<'_> {
     }
     fn long(&mut self) -> Option<u64> {
         Some(u64::from(self.word()?) | u64::from(self.word()?) << 32)
+    }
+    fn watch(&mut self) -> Option<CollapseWatch> {
+        let start = self.number()?;
+        let mut seen = Vec::new();
+        while let Some(row) = self.word() {
+            seen.push((row, self.word()?));
+        }
+        Some(CollapseWatch::restored(start, seen))
     }
     fn vector<V: Vector>(&mut self) -> Option<V> {
         let mut vector = V::ZERO;
@@ -67,6 +76,9 @@ impl<V: Vector> World<V> {
         for row in 0..self.bodies.len() {
             self.write_grain(row, &mut numbers, &mut words);
         }
+        let (start, seen) = self.watch.state();
+        numbers.push(start);
+        words.extend(seen);
         EngineState { numbers, words, ..EngineState::default() }
     }
 
@@ -124,6 +136,8 @@ impl<V: Vector> World<V> {
         for _ in 0..grains {
             world.read_grain(&mut tape, &mut anchors)?;
         }
+        // Older states have none.
+        world.watch = tape.watch().unwrap_or_default();
         world.lists = anchors.map(|anchors| {
             let mut lists = Lists::new(half_width);
             lists.reset(anchors);

@@ -170,5 +170,7 @@ message! {
         engine_numbers: Vec<u8> = 21 [bytes = "vec"],
         /// The same, as uint32, little-endian.
         engine_words: Vec<u8> = 22 [bytes = "vec"],
+        /// Overlaps found by audits, of engines that allow none.
+        invalid_states: Option<u64> = 23 [uint64, optional],
     }
 }

@@ -7,6 +7,8 @@ pub(crate) mod grainflow;
 pub(crate) mod measures;
 pub(crate) mod units;
 
+use sha2::{Digest, Sha256};
+
 /// The newest form of a log that this program writes and reads.
 pub(crate) const FORMAT: u32 = 1;
 /// Name of the metadata record that holds everything known about the run.
@@ -15,10 +17,23 @@ pub(crate) const METADATA: &str = "grainflow";
 pub(crate) const FORMAT_KEY: &str = "format";
 /// Metadata key: ticks of `log_time` per unit of simulated time.
 pub(crate) const TIME_SCALE_KEY: &str = "time_scale";
+/// Metadata key: SHA-256 of the scenario's text, in hexadecimal digits.
+pub(crate) const DIGEST_KEY: &str = "scenario_sha256";
+/// Metadata key of logs that were recovered from damaged ones: messages may be missing.
+pub(crate) const RECOVERED_KEY: &str = "recovered";
+/// Name of the metadata records that say where a run was resumed with changes; one for each time.
+pub(crate) const RESUMPTION: &str = "grainflow.resumption";
 /// Name of the attachment that holds the scenario.
 pub(crate) const SCENARIO: &str = "scenario.toml";
+/// How the names of attachments begin that hold the scenarios of earlier parts.
+pub(crate) const EARLIER_SCENARIO: &str = "scenario-before-";
 /// The one frame of reference.
 pub(crate) const FRAME_ID: &str = "world";
+
+/// SHA-256 of a text, in hexadecimal digits.
+pub(crate) fn digest(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
 /// Where the kinds of messages go.
 pub(crate) mod topic {

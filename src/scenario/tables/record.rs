@@ -8,6 +8,8 @@ use crate::scenario::suggest::did_you_mean;
 
 /// The most recordings of one run.
 const MOST_RECORDINGS: u64 = 1_000_000;
+/// The most states of one run, beside the one at its end.
+const MOST_STATES: u64 = 10_000;
 /// Points of a frame unless `record.points` says otherwise.
 const USUAL_POINTS: u32 = 20_000;
 
@@ -20,7 +22,8 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
     let spacing = spacing(&record, limits);
     let points = points(&record);
     let measures = measures(&record);
-    let states = record.whole("states", 0, 10_000).or(4);
+    let states = record.whole("states", 0, MOST_STATES).or(4);
+    let state_every = state_every(&record, limits);
     let from = record.number("from", Bound::NOT_NEGATIVE).optional();
     if let (Some(Some(from)), Some(RunLimits { time: Some(time), .. })) = (from, limits)
         && from >= time
@@ -36,6 +39,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         points: points?,
         measures: measures?,
         states: states? as u32,
+        state_every: state_every?,
         from: from?,
     })
 }
@@ -72,6 +76,23 @@ fn spacing(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Spacing> {
         (None, true, frames) => Some(Spacing::LogFrames(frames)),
         (None, false, frames) => Some(Spacing::Frames(frames)),
     }
+}
+
+fn state_every(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Option<f64>> {
+    const KEY: &str = "state_every";
+    let every = record.number(KEY, Bound::POSITIVE).optional()?;
+    if record.has(KEY) && record.has("states") {
+        record.mistake("states", "stands beside state_every; keep one of the two");
+        return None;
+    }
+    if let (Some(every), Some(RunLimits { time: Some(time), .. })) = (every, limits)
+        && time / every > MOST_STATES as f64
+    {
+        let least = time / MOST_STATES as f64;
+        record.mistake(KEY, format!("saves more than {MOST_STATES} states; give at least {least}"));
+        return None;
+    }
+    Some(every)
 }
 
 fn points(record: &Section<'_>) -> Option<Option<u32>> {

@@ -1,0 +1,42 @@
+//! What is looked at when a run is recorded.
+
+use crate::observe::measure::{Column, Dimension, Profile};
+use crate::simulation::Simulation;
+use crate::space::Vector;
+
+/// Which measures are stored, and their columns.
+#[derive(Clone, Debug)]
+pub(super) struct Looks {
+    /// `[measure]`: whether its series and profiles are stored.
+    pub(super) stored: Vec<bool>,
+    /// Columns of the series; the first is the time.
+    pub(super) columns: Vec<Column>,
+}
+
+impl Looks {
+    /// What the scenario of `simulation` wants to be stored.
+    pub(super) fn of<V: Vector>(simulation: &mut Simulation<'_, V>) -> Self {
+        let names = simulation.scenario().record.measures.as_ref();
+        let is_stored = |name: &str| names.is_none_or(|names| names.iter().any(|n| n == name));
+        let (measures, _) = simulation.observation();
+        let stored: Vec<bool> = measures.iter().map(|measure| is_stored(measure.name())).collect();
+        let mut columns =
+            vec![Column { name: "time".to_owned(), unit: Dimension { time: 1, ..Dimension::default() } }];
+        for (measure, _) in measures.iter().zip(&stored).filter(|(_, stored)| **stored) {
+            columns.extend(measure.columns());
+        }
+        Looks { stored, columns }
+    }
+
+    /// Values of the columns, and profiles of this moment. Measures of what happens between two looks begin anew.
+    pub(super) fn take<V: Vector>(&self, simulation: &mut Simulation<'_, V>) -> (Vec<f64>, Vec<Profile>) {
+        let (measures, snapshot) = simulation.observation();
+        let mut values = vec![snapshot.gas.time()];
+        let mut profiles = Vec::new();
+        for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
+            values.extend(measure.values(&snapshot));
+            profiles.extend(measure.profiles(&snapshot));
+        }
+        (values, profiles)
+    }
+}

@@ -1,0 +1,285 @@
+//! Goes on with the run of a log, into a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use glam::{DVec2, DVec3};
+
+use super::folder::RunFolder;
+use super::recorder::{Origin, Recorder};
+use super::timetable::Timetable;
+use super::{Listener, NUMERICS, Outcome, Run, RunError, log_of, run};
+use crate::record::contents::EarlierPart;
+use crate::record::error::LogError;
+use crate::record::history::History;
+use crate::record::reader::{Placed, last_state_and_place};
+use crate::record::state::SavedState;
+use crate::scenario::error::ScenarioError;
+use crate::scenario::model::{AnyScenario, Scenario};
+use crate::scenario::{Overrides, parse};
+use crate::simulation::Simulation;
+use crate::space::Vector;
+use crate::stopwatch::Stopwatch;
+
+/// Tables of a scenario that may change when its run goes on.
+const MAY_CHANGE: [&str; 2] = ["run", "record"];
+
+/// Why the run of a log cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    /// The log cannot be used.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A change is wrong, or the scenario in the log is.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// A change of something that has to stay.
+    #[error(
+        "{0}: a run that goes on keeps its scenario; only run.* and record.* may change with --set; for anything else \
+         begin a new run, from the grains of this one with initial.positions = {{ log = \"…\" }}"
+    )]
+    Change(String),
+    /// Another version made the bits.
+    #[error(
+        "the log {} was made with numerics {found} (grainflow {version}), and this is grainflow {} with numerics {}, whose \
+         trajectories have other bits: resume it with grainflow {version}", path.display(), env!("CARGO_PKG_VERSION"), NUMERICS
+    )]
+    Numerics {
+        /// The log.
+        path: PathBuf,
+        /// Its numerics.
+        found: String,
+        /// The version that wrote it.
+        version: String,
+    },
+    /// The scenario in the log is another one.
+    #[error(
+        "the scenario in the log {} is not the one that the log was begun with: its text has another SHA-256 than the \
+         metadata say; copy the log again from where it came from", .0.display()
+    )]
+    OtherScenario(PathBuf),
+    /// The new end is already past.
+    #[error(
+        "the log {} has come to t = {time} and {collisions:.6} collisions per particle, where run.{limit} ends the run; \
+         give a later end: --set run.{limit}=…", path.display()
+    )]
+    Past {
+        /// The log.
+        path: PathBuf,
+        /// The limit that is reached.
+        limit: &'static str,
+        /// When its last state was saved [time].
+        time: f64,
+        /// Collisions per particle up to then.
+        collisions: f64,
+    },
+}
+
+/// A run that can go on: its log, its scenario, and the last complete state, if there is one.
+#[derive(Debug)]
+pub struct Resumption {
+    log: PathBuf,
+    history: History,
+    scenario: AnyScenario,
+    state: State,
+    /// The changes, as on the command line; empty where the scenario stays as it was.
+    changes: String,
+}
+
+#[derive(Debug)]
+enum State {
+    Two(Option<Placed<DVec2>>),
+    Three(Option<Placed<DVec3>>),
+}
+
+impl Resumption {
+    /// Reads the log at `path`, a run folder or its log, and applies the `sets` (`key=value`) to its scenario.
+    pub fn open(path: &Path, sets: &[String]) -> Result<Self, ResumeError> {
+        let log = if path.is_dir() { path.join("log.mcap") } else { path.to_owned() };
+        if let Some(refused) = sets.iter().enumerate().find(|(_, set)| !may_change(set)) {
+            return Err(ResumeError::Change(format!("--set #{} '{}'", refused.0 + 1, refused.1)));
+        }
+        let history = History::read(&log)?;
+        check_numerics(&log, &history)?;
+        if !history.has_own_scenario() {
+            return Err(ResumeError::OtherScenario(log));
+        }
+        let overrides = Overrides { sets: sets.to_vec(), ..Overrides::default() };
+        let scenario = scenario_of(&log, &history, &history.scenario, &overrides)?;
+        let changed = scenario.source_text() != history.scenario;
+        let changes = if changed { sets.join("; ") } else { String::new() };
+        let state = match &scenario {
+            AnyScenario::Two(_) => State::Two(last_state_and_place(&log)?),
+            AnyScenario::Three(_) => State::Three(last_state_and_place(&log)?),
+        };
+        let resumption = Resumption { log, history, scenario, state, changes };
+        resumption.check_end()?;
+        Ok(resumption)
+    }
+
+    /// When the run goes on [time]; `None` where the log holds no complete state, and it begins again.
+    pub fn time(&self) -> Option<f64> {
+        match &self.state {
+            State::Two(state) => state.as_ref().map(|(state, _)| state.time),
+            State::Three(state) => state.as_ref().map(|(state, _)| state.time),
+        }
+    }
+
+    /// The log.
+    pub fn log(&self) -> &Path {
+        &self.log
+    }
+
+    /// What is missing in the log, as a sentence, where it was cut off.
+    pub fn cut_off(&self) -> Option<&str> {
+        self.history.cut_off.as_deref()
+    }
+
+    /// The folder that it goes into unless somebody wants another one: beside that of the log.
+    pub fn usual_folder(&self) -> PathBuf {
+        let folder = self.log.parent().and_then(Path::file_name).map(|name| name.to_string_lossy());
+        match folder {
+            Some(name) => {
+                self.log.parent().unwrap_or(Path::new("")).with_file_name(format!("{name}-resumed"))
+            }
+            None => {
+                let value = |key| self.history.value(key);
+                PathBuf::from("out").join(format!("{}-{}-resumed", value("scenario"), value("engine")))
+            }
+        }
+    }
+
+    /// Runs into `folder` until the end, or until `stop` turns true. `tell` hears of every step.
+    pub fn run(
+        self,
+        folder: &Path,
+        force: bool,
+        stop: &AtomicBool,
+        tell: Listener<'_>,
+    ) -> Result<Outcome, RunError> {
+        let Resumption { log, history, scenario, state, changes } = self;
+        if matches!(state, State::Two(None) | State::Three(None)) {
+            return run(&scenario, folder, force, stop, tell);
+        }
+        let folder = RunFolder::claim(folder, force)?;
+        let from = From { log: &log, history: &history, changes };
+        rayon::scope(|_| match (&scenario, state) {
+            (AnyScenario::Two(scenario), State::Two(Some(state))) => {
+                from.resume(scenario, state, folder)?.end_and_write(stop, tell)
+            }
+            (AnyScenario::Three(scenario), State::Three(Some(state))) => {
+                from.resume(scenario, state, folder)?.end_and_write(stop, tell)
+            }
+            _ => unreachable!("the state was read in the dimension of the scenario"),
+        })
+    }
+
+    /// A changed end has to come after the state.
+    fn check_end(&self) -> Result<(), ResumeError> {
+        let changes_end = self.changes.split("; ").any(|set| set.trim_start().starts_with("run"));
+        let reached = match (&self.scenario, &self.state) {
+            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => end_reason(scenario, state),
+            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => end_reason(scenario, state),
+            _ => None,
+        };
+        match reached {
+            Some((limit, time, collisions)) if changes_end => {
+                Err(ResumeError::Past { path: self.log.clone(), limit, time, collisions })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The limit that `state` has reached, its time and its collisions per particle.
+fn end_reason<V: Vector>(
+    scenario: &Scenario<V>,
+    state: &SavedState<'_, V>,
+) -> Option<(&'static str, f64, f64)> {
+    let simulation = Simulation::resume(scenario, state.clone());
+    let reason = simulation.end_reason()?;
+    Some((reason.name(), state.time, state.totals.collisions_per_particle))
+}
+
+/// Whether `--set` may change this key.
+fn may_change(set: &str) -> bool {
+    let key = set.split('=').next().unwrap_or_default();
+    let table = key.split(['.', '[']).next().unwrap_or_default().trim();
+    MAY_CHANGE.contains(&table)
+}
+
+/// The scenario of `text` in the `log`, with `overrides`.
+pub(super) fn scenario_of(
+    log: &Path,
+    history: &History,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<AnyScenario, ScenarioError> {
+    parse(history.value("scenario"), text, overrides)
+        .map_err(|error| ScenarioError { file: format!("the scenario in {}", log.display()), ..error })
+}
+
+fn check_numerics(log: &Path, history: &History) -> Result<(), ResumeError> {
+    if history.value("numerics") == NUMERICS.to_string() {
+        return Ok(());
+    }
+    let (found, version) = (history.value("numerics").to_owned(), history.value("version").to_owned());
+    Err(ResumeError::Numerics { path: log.to_owned(), found, version })
+}
+
+/// Where a run goes on from.
+struct From<'a> {
+    log: &'a Path,
+    history: &'a History,
+    changes: String,
+}
+
+impl From<'_> {
+    fn resume<'s, V: Vector>(
+        self,
+        scenario: &'s Scenario<V>,
+        (state, place): Placed<V>,
+        folder: RunFolder,
+    ) -> Result<Run<'s, V>, RunError> {
+        let watch = Stopwatch::default();
+        let mut earlier = self.history.earlier.clone();
+        let changed = !self.changes.is_empty();
+        if changed {
+            earlier.push(EarlierPart {
+                scenario: self.history.scenario.clone(),
+                time: state.time,
+                steps: state.totals.steps,
+                events: state.totals.events.all,
+                changes: self.changes,
+            });
+        }
+        let begins_log = state.recordings == 0;
+        let (mut simulation, timetable) = go_on_with(scenario, state, changed);
+        let origin = Origin {
+            log: self.log,
+            history: self.history,
+            state: place,
+            keeps_state: changed || begins_log,
+            earlier,
+        };
+        let recorder = Recorder::resume(&log_of(&folder), &mut simulation, timetable, &origin)?;
+        Ok(Run { folder, simulation, recorder, watch })
+    }
+}
+
+/// The simulation that goes on from `state`, and when it is recorded; `changed` where its end or its records are
+/// other ones than before.
+pub(super) fn go_on_with<'s, V: Vector>(
+    scenario: &'s Scenario<V>,
+    state: SavedState<'_, V>,
+    changed: bool,
+) -> (Simulation<'s, V>, Timetable) {
+    let (recordings, states) = (state.recordings, state.states);
+    if !changed {
+        let timetable = Timetable::after(&scenario.record, recordings, states);
+        return (Simulation::resume(scenario, state), timetable);
+    }
+    let simulation = Simulation::resume_changed(scenario, state);
+    let timetable = Timetable::from_now(&simulation);
+    (simulation, timetable)
+}

@@ -1,0 +1,145 @@
+//! Logs that cannot be verified or resumed, each with a message of its own.
+
+use std::fs;
+
+use grainflow::run::resume::Resumption;
+use grainflow::run::verify::Verdict;
+
+use super::gas;
+use super::logs::{Place, log_bytes, rewritten, run_into, verify, without_chunk};
+
+/// The log of a small run, and what is said of it after it was made wrong.
+struct Trial {
+    place: Place,
+    bytes: Vec<u8>,
+}
+
+impl Trial {
+    fn new() -> Self {
+        let place = Place::new();
+        let bytes = log_bytes(&run_into(&place.path("run"), &gas("hsmc").with(&[])));
+        Trial { place, bytes }
+    }
+
+    fn written(&self, bytes: &[u8]) -> std::path::PathBuf {
+        let path = self.place.path("wrong.mcap");
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    /// The message and whether it is a difference, rather than a refusal.
+    fn said(&self, bytes: &[u8]) -> (String, bool) {
+        match verify(&self.written(bytes)) {
+            Ok(Verdict::Different(_, difference)) => (difference, true),
+            Ok(other) => panic!("{other:?}"),
+            Err(error) => (error.to_string(), false),
+        }
+    }
+
+    fn refused_to_resume(&self, bytes: &[u8], sets: &[&str]) -> String {
+        let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+        Resumption::open(&self.written(bytes), &sets).unwrap_err().to_string()
+    }
+}
+
+fn assert_says((said, is_difference): (String, bool), differs: bool, words: &str) {
+    assert!(said.contains(words) && is_difference == differs, "{is_difference}: {said}");
+}
+
+#[test]
+fn what_does_not_hold_is_told_apart() {
+    let trial = Trial::new();
+    let same = |text: String| text;
+    // A copy with the same contents is fine, however its chunks lie.
+    let copy = rewritten(&trial.bytes, |_| {}, same);
+    assert!(matches!(verify(&trial.written(&copy)).unwrap(), Verdict::Identical(..)));
+    // One bit.
+    let mut flipped = trial.bytes.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 1;
+    assert_says(trial.said(&flipped), false, "is damaged near byte");
+    // A missing chunk: the index is there or not.
+    assert_says(trial.said(&without_chunk(&trial.bytes, 4)), false, "is not whole: message");
+    let unfinished = &trial.bytes[..trial.bytes.len() * 9 / 10];
+    let start = super::logs::chunks(&trial.bytes)[4].clone();
+    let cut = [&unfinished[..start.start], &unfinished[start.end..]].concat();
+    assert_says(trial.said(&cut), false, "a part was taken out of the file");
+    // Another scenario: its text alone, and everything that says so.
+    let swapped =
+        rewritten(&trial.bytes, |_| {}, |text| text.replace("restitution = 0.9", "restitution = 0.8"));
+    assert_says(trial.said(&swapped), true, "the scenario in the log is another one than it was begun with");
+    let forged = rewritten(
+        &trial.bytes,
+        |metadata| drop(metadata.remove("scenario_sha256")),
+        |text| text.replace("restitution = 0.9", "restitution = 0.8"),
+    );
+    assert_says(trial.said(&forged), true, "in the log and");
+    // Another seed.
+    let seed = rewritten(&trial.bytes, |_| {}, |text| text.replace("seed = 3", "seed = 4"));
+    assert_says(trial.said(&seed), true, "the log was made with seed 3, and the scenario in it says 4");
+    let forged = rewritten(
+        &trial.bytes,
+        |metadata| {
+            metadata.remove("scenario_sha256");
+            metadata.insert("seed".to_owned(), "4".to_owned());
+        },
+        |text| text.replace("seed = 3", "seed = 4"),
+    );
+    assert_says(trial.said(&forged), true, "at t = 0.0, grain 0: position x is");
+    assert_says(trial.said(&forged), true, "the scenario or its seed is not that of the run");
+    // Other bits by another version.
+    let older = |metadata: &mut std::collections::BTreeMap<String, String>| {
+        metadata.insert("numerics".to_owned(), "1".to_owned());
+        metadata.insert("version".to_owned(), "0.0.7".to_owned());
+    };
+    assert_says(trial.said(&rewritten(&trial.bytes, older, same)), false, "verify it with grainflow 0.0.7");
+    let newer = |metadata: &mut std::collections::BTreeMap<String, String>| {
+        metadata.insert("format".to_owned(), "9".to_owned());
+        metadata.insert("version".to_owned(), "9.8.7".to_owned());
+    };
+    assert_says(
+        trial.said(&rewritten(&trial.bytes, newer, same)),
+        false,
+        "the version that wrote it (9.8.7)",
+    );
+    assert_says(trial.said(&[]), false, "is empty");
+}
+
+/// Logs of formats before this one, and of this one before some things were written, are read.
+#[test]
+fn older_logs_are_verified_and_resumed() {
+    let trial = Trial::new();
+    let old = rewritten(
+        &trial.bytes,
+        |metadata| {
+            metadata.remove("scenario_sha256");
+            metadata.insert("format".to_owned(), "0".to_owned());
+        },
+        |text| text,
+    );
+    assert!(matches!(verify(&trial.written(&old)).unwrap(), Verdict::Identical(..)));
+    assert!(Resumption::open(&trial.written(&old), &[]).unwrap().time().is_some());
+}
+
+#[test]
+fn what_may_not_change_is_refused() {
+    let trial = Trial::new();
+    let refused = |sets: &[&str]| trial.refused_to_resume(&trial.bytes, sets);
+    for set in ["seed=4", "particles.restitution=0.8", "engine.kind=dsmc", "runs.time=3", "running=1"] {
+        let said = refused(&["record.frames=3", set]);
+        assert!(said.contains(&format!("--set #2 '{set}': a run that goes on keeps its scenario")), "{said}");
+    }
+    let said = refused(&["run.collisions_per_particle=2"]);
+    assert!(said.contains("where run.collisions_per_particle ends the run; give a later end"), "{said}");
+    let said = refused(&["run.time=1000000"]);
+    assert!(said.contains("where run.collisions_per_particle ends the run"), "{said}");
+    let said = refused(&["record.frames=many"]);
+    assert!(said.contains("--set #1 'record.frames=many'") && said.contains("whole number"), "{said}");
+    let swapped = rewritten(&trial.bytes, |_| {}, |text| text.replace("0.9", "0.8"));
+    assert!(trial.refused_to_resume(&swapped, &[]).contains("is not the one that the log was begun with"));
+    let older =
+        rewritten(&trial.bytes, |metadata| drop(metadata.insert("numerics".into(), "1".into())), |t| t);
+    assert!(trial.refused_to_resume(&older, &[]).contains("resume it with grainflow"));
+    assert!(trial.refused_to_resume(&without_chunk(&trial.bytes, 5), &[]).contains("is not whole"));
+    assert!(trial.refused_to_resume(b"", &[]).contains("is empty"));
+}
