@@ -371,7 +371,19 @@ fn an_interrupt_ends_a_run_cleanly() {
 #[test]
 fn help_tells_what_works_and_nothing_else() {
     let place = Place::new();
-    for verb in ["", "run", "compare", "sweep", "calibrate", "replay", "recover", "export", "view", "check", "scenarios"] {
+    for verb in [
+        "",
+        "run",
+        "compare",
+        "sweep",
+        "calibrate",
+        "replay",
+        "recover",
+        "export",
+        "view",
+        "check",
+        "scenarios",
+    ] {
         let arguments: Vec<&str> = [verb, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         let output = place.grainflow(&arguments);
         assert_eq!((code(&output), error(&output)), (0, String::new()));

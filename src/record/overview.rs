@@ -46,6 +46,10 @@ pub struct Overview {
     pub states: Vec<(f64, u64)>,
     /// The species of every grain `[id]` that a state holds, 0 where none does; empty where all grains are alike.
     pub species: Vec<u8>,
+    /// Where the run was resumed with changes: time, steps, events and what was changed.
+    pub resumptions: Vec<BTreeMap<String, String>>,
+    /// Messages that a recovery could not save.
+    pub lost: u64,
     /// What is missing, as a sentence, where the file was cut off.
     pub cut_off: Option<String>,
 }
@@ -67,6 +71,9 @@ pub fn overview(path: &Path) -> Result<Overview, LogError> {
         match event {
             Event::Metadata(metadata) => found.metadata = metadata,
             Event::Scenario(scenario) => found.scenario = scenario,
+            Event::Resumption(resumption) => found.resumptions.push(resumption),
+            Event::Hole { missing, .. } => found.lost += u64::from(missing.end - missing.start),
+            Event::EarlierScenario(_) => {}
             Event::Channel { topic, description, metadata } => {
                 found.channels.entry(topic.to_owned()).or_default();
                 if topic == topic::MEASURES {

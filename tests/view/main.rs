@@ -37,6 +37,7 @@ fn header() -> LogHeader {
         }),
         start: 0.0,
         time_scale: time_scale(1.2, 0.1),
+        ..LogHeader::default()
     }
 }
 

@@ -34,6 +34,13 @@ fn told(log: &Path, found: &Overview) -> String {
         "condition",
         found.cut_off.clone().unwrap_or_else(|| "whole, every checksum holds".to_owned()),
     ));
+    for part in &found.resumptions {
+        let value = |key: &str| part.get(key).map_or("?", String::as_str);
+        lines.push(line("gone on", format!("at t = {}, with {}", value("time"), value("changes"))));
+    }
+    if found.lost > 0 {
+        lines.push(line("lost before a recovery", format!("{} messages", found.lost)));
+    }
     lines.push(line("recordings", recordings(found)));
     lines.push(line("frames", frames(found)));
     lines.push(line("saved states", states(found)));
