@@ -8,6 +8,7 @@ use super::error::ViewError;
 use super::packing::MOST_POINTS;
 use crate::observe::measure::Dimension;
 use crate::record::contents::{Frame, Walls};
+use crate::record::error::LogError;
 use crate::record::index::LogIndex;
 use crate::report::scene::Scene;
 use crate::report::setup::Setup;
@@ -211,7 +212,11 @@ fn samples(index: &LogIndex) -> Result<Vec<Frame>, ViewError> {
         if points > MOST_SAMPLED {
             break;
         }
-        let moment = index.moment(number)?;
+        let moment = match index.moment(number) {
+            // Who comes to this frame is told.
+            Err(LogError::Damaged { .. }) => None,
+            moment => moment?,
+        };
         points += moment.as_ref().map_or(0, |moment| moment.frame.positions.len());
         samples.extend(moment.map(|moment| moment.frame));
     }

@@ -73,7 +73,7 @@ impl Site {
     }
 
     /// Rows of the series: `log`, `from`, every `step`-th, `count`; fewer where they take long. float64, little-endian,
-    /// `[row][column]`.
+    /// `[row][column]`; NaN where a row is damaged.
     fn series(&self, request: &Request<'_>) -> Result<Response, Response> {
         let log = self.log(request)?;
         let (from, step) = (request.number("from", 0)?, request.number("step", 1)?.max(1));
@@ -81,7 +81,13 @@ impl Site {
         let watch = Stopwatch::default();
         let mut bytes = Vec::new();
         for number in (from..log.index().recordings()).step_by(step).take(count) {
-            let Some(row) = log.index().row(number).map_err(|error| failure(&error))? else { break };
+            let row = match log.index().row(number) {
+                Ok(Some(row)) => row,
+                Ok(None) => break,
+                // A gap: the page counts them and says so.
+                Err(LogError::Damaged { .. }) => vec![f64::NAN; log.index().head().columns.len()],
+                Err(error) => return Err(failure(&error)),
+            };
             row.iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
             if watch.seconds() > MOST_SECONDS {
                 break;

@@ -8,7 +8,7 @@ use grainflow::record::writer::{LogHeader, LogWriter, Recording};
 use grainflow::view::Site;
 use proptest::prelude::*;
 
-use super::{GRAINS, float, get, grains, header, sample, site, text, word};
+use super::{GRAINS, RECORDINGS, float, get, grains, header, sample, site, text, word};
 
 #[test]
 fn only_those_with_the_token_and_a_local_name_are_let_in() {
@@ -132,6 +132,25 @@ fn a_thinned_log_has_no_clusters_and_says_why() {
     let frame =
         site.respond(&get(&format!("/frame?token={token}&number=3&colour=clusters"), "127.0.0.1:4000"));
     assert_eq!(word(&frame.body, 8), 0);
+}
+
+#[test]
+fn a_damaged_frame_is_told_and_the_others_are_shown() {
+    let (_folder, path) = sample(None);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x40;
+    std::fs::write(&path, &bytes).unwrap();
+    let (site, token) = site(&path);
+    let ask = |place: &str| site.respond(&get(&format!("/{place}token={token}"), "127.0.0.1:4000"));
+    let answers: Vec<_> = (0..RECORDINGS).map(|number| ask(&format!("frame?number={number}&"))).collect();
+    let bad: Vec<usize> = (0..RECORDINGS).filter(|&number| answers[number].status != 200).collect();
+    assert_eq!(bad.len(), 1);
+    assert!(text(&answers[bad[0]]).contains("damaged near byte"));
+    let rows = ask("series?").body;
+    assert_eq!(rows.len(), RECORDINGS * 24);
+    let lost: Vec<usize> = (0..RECORDINGS).filter(|row| float(&rows, 24 * row).is_nan()).collect();
+    assert_eq!(lost, bad);
 }
 
 #[test]

@@ -42,7 +42,7 @@ function makePane(parent, log, index, count, player) {
     fitCanvas(over);
     const eye = projection(log, grains.width / ratio, grains.height / ratio);
     drawSides(log, eye, under, over, ratio);
-    if (!frame) return;
+    if (!frame) return painter({ frame, ratio });
     const own = colours();
     painter({ frame, log, eye, ratio, ...own });
     least.textContent = own.logarithmic ? "1" : "0";
@@ -66,6 +66,14 @@ function makePane(parent, log, index, count, player) {
   new ResizeObserver(draw).observe(stage);
   return {
     draw, show, stage, frame: () => frame, isFast: painter.isFast,
+    // Nothing to show, and why.
+    blank(text) {
+      frame = null;
+      message.hidden = false;
+      message.textContent = text;
+      moment.textContent = "";
+      draw();
+    },
     say: (text) => { message.hidden = !text; message.textContent = text; },
   };
 }

@@ -12,11 +12,16 @@ function makePlayer(source, about) {
     const steps = logs.map((log, k) => Math.max(log.row_step || 1, collected.series[k].step));
     const isReading = collected.series.some((series) => !series.isWhole);
     const thinned = Math.max(...steps) > 1 ? `Curves show every ${steps.join(" or ")}th recording; the values at the cursor are those of the frame. ` : "";
-    byId("series-remark").textContent = thinned + (isReading ? "The series is being read …" : "");
+    const lost = collected.series.reduce((sum, series) => sum + series.rows.filter((row) => Number.isNaN(row[0])).length, 0);
+    const gaps = lost ? `${lost === 1 ? "One recording is" : lost + " recordings are"} damaged in the log and left out. ` : "";
+    byId("series-remark").textContent = thinned + gaps + (isReading ? "The series is being read …" : "");
   });
 
   const collected = seriesOf(source, logs, drawPlots);
-  const store = frameStore(source, refresh, (log, error) => own.panes[log].say(error.message));
+  const store = frameStore(source, refresh, (log, text) => {
+    setPlaying(false);
+    own.panes[log].say(text);
+  });
   const api = {
     logs,
     colour: () => byId("colour").value,
@@ -81,7 +86,8 @@ function makePlayer(source, about) {
       remark(`Reading collisions per particle: ${Math.round(100 * found.length * every / log.rows)} %`);
       const numbers = await source.rows(index, found.length * every, every, 512);
       if (numbers.length < width) break;
-      for (let k = column; k < numbers.length; k += width) found.push(numbers[k]);
+      // A recording that is damaged counts as the one before it.
+      for (let k = column; k < numbers.length; k += width) found.push(Number.isNaN(numbers[k]) ? found[found.length - 1] || 0 : numbers[k]);
     }
     remark("");
     return log.recordings.map((row) => found[Math.min(found.length - 1, Math.floor(row / every))]);
@@ -104,7 +110,8 @@ function makePlayer(source, about) {
   }
 
   function isThere(at) {
-    return own.stations[at].frames.every((number, log) => !logs[log].times.length || store.get(log, number, api.colour()));
+    const is = (number, log) => store.get(log, number, api.colour()) || store.fault(log, number, api.colour());
+    return own.stations[at].frames.every((number, log) => !logs[log].times.length || is(number, log));
   }
 
   // Shows what is there of the present station.
@@ -114,6 +121,8 @@ function makePlayer(source, about) {
     own.panes.forEach((pane, log) => {
       if (!logs[log].times.length) return pane.say("The log holds no frames.");
       const frame = store.get(log, station.frames[log], api.colour());
+      const fault = store.fault(log, station.frames[log], api.colour());
+      if (fault) pane.blank(fault);
       if (frame && frame !== pane.frame()) pane.show(frame, noteOf(log, station, frame));
     });
     drawPlots();
