@@ -6,7 +6,7 @@ use std::io::{Read, Seek};
 use std::ops::Range;
 use std::path::Path;
 
-use mcap::records::Record;
+use mcap::records::{MessageHeader, Record};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError};
 
@@ -205,29 +205,35 @@ impl Progress {
                 self.topics.insert(channel.id, channel.topic);
                 Ok(())
             }
-            Record::Message { header, data } => {
-                if !self.header {
-                    return Err(Fault::NoHeader);
-                }
-                let topic = self.topics.get(&header.channel_id);
-                let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
-                let next = self.places.entry(header.channel_id).or_insert(0);
-                if let Some(missing) = missing(topic, *next, header.sequence)? {
-                    if !self.recovered {
-                        return Err(Fault::Missing(topic.clone(), missing));
-                    }
-                    visit(Event::Hole { topic, missing })?;
-                }
-                *next = header.sequence.saturating_add(1);
-                let (sequence, log_time) = (header.sequence, header.log_time);
-                visit(Event::Message { topic, sequence, log_time, data: &data })
-            }
+            Record::Message { header, data } => self.message(&header, &data, visit),
             Record::DataEnd(_) => {
                 self.data_ended = true;
                 Ok(())
             }
             _ => Ok(()),
         }
+    }
+
+    fn message(
+        &mut self,
+        header: &MessageHeader,
+        data: &[u8],
+        visit: &mut dyn FnMut(Event<'_>) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        if !self.header {
+            return Err(Fault::NoHeader);
+        }
+        let topic = self.topics.get(&header.channel_id);
+        let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
+        let next = self.places.entry(header.channel_id).or_insert(0);
+        if let Some(missing) = missing(topic, *next, header.sequence)? {
+            if !self.recovered {
+                return Err(Fault::Missing(topic.clone(), missing));
+            }
+            visit(Event::Hole { topic, missing })?;
+        }
+        *next = header.sequence.saturating_add(1);
+        visit(Event::Message { topic, sequence: header.sequence, log_time: header.log_time, data })
     }
 
     /// What to say of a log of `length` bytes that was read up to its proper end, or not.

@@ -103,7 +103,7 @@ fn a_killed_run_goes_on_to_the_same_end() {
 }
 
 #[test]
-#[ignore = "a hundred runs: two minutes"]
+#[ignore = "a hundred runs, two minutes: cargo test --release --test resume -- --ignored"]
 fn a_hundred_killed_runs_go_on_to_the_same_end() {
     kill([34, 33, 33]);
 }

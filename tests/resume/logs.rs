@@ -117,3 +117,8 @@ pub(crate) fn without_chunk(bytes: &[u8], k: usize) -> Vec<u8> {
     let chunk = chunks(bytes)[k].clone();
     [&bytes[..chunk.start], &bytes[chunk.end..]].concat()
 }
+
+/// Numbers as bits: what is not defined is the same as itself.
+pub(crate) fn bits<'a>(rows: impl IntoIterator<Item = &'a Vec<f64>>) -> Vec<Vec<u64>> {
+    rows.into_iter().map(|row| row.iter().map(|value| value.to_bits()).collect()).collect()
+}
