@@ -24,6 +24,7 @@ pub mod velocity_profile;
 pub mod wall_stress;
 
 mod density_waves;
+mod last_look;
 pub(crate) mod layout;
 mod packing;
 mod samples;

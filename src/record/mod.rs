@@ -5,6 +5,7 @@
 //! and `/state` (saved states). Metadata `grainflow` and the attachment `scenario.toml` stand
 //! before the first message. Message n of `/particles` belongs to message n of `/measures`.
 
+mod background;
 pub mod contents;
 pub mod error;
 pub mod frame;

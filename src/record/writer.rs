@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::BufWriter;
+use std::path::Path;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, WriteOptions};
 use prost::Message;
 
+use super::background::{Background, Encoded, FileWriter};
 use super::contents::{Frame, Walls};
 use super::error::LogError;
 use super::frame::point_cloud;
@@ -53,10 +54,13 @@ pub struct Recording<'a> {
     pub frame: &'a Frame,
 }
 
-/// A log that is being written. Without [`LogWriter::finish`] it has no end.
+/// A log that is being written, by a thread of its own. Without [`LogWriter::finish`] it has no end.
+///
+/// What is given is encoded at once, and compressed and written while the run goes on. Where something cannot be
+/// written, this or the next call says so, whichever it is.
+#[derive(Debug)]
 pub struct LogWriter {
-    path: PathBuf,
-    writer: mcap::Writer<BufWriter<File>>,
+    file: Background,
     time_scale: u64,
     columns: usize,
     measures: Channel,
@@ -73,12 +77,6 @@ struct Channel {
     last_tick: u64,
 }
 
-impl std::fmt::Debug for LogWriter {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("LogWriter").field("path", &self.path).finish_non_exhaustive()
-    }
-}
-
 impl LogWriter {
     /// Begins the log at `path`, in place of what may stand there.
     pub fn create(path: &Path, header: &LogHeader) -> Result<Self, LogError> {
@@ -86,98 +84,76 @@ impl LogWriter {
             return Err(LogError::Columns { path: path.to_owned(), fault });
         }
         let file = File::create(path).map_err(|source| LogError::Create { path: path.to_owned(), source })?;
-        Self::begin(path, BufWriter::new(file), header).map_err(|source| LogError::write(path, source))
-    }
-
-    fn begin(path: &Path, file: BufWriter<File>, header: &LogHeader) -> mcap::McapResult<Self> {
-        let mut writer = options().create(file)?;
-        writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
-        let start = tick(header.start, header.time_scale);
-        writer.attach(&mcap::Attachment {
-            log_time: start,
-            create_time: start,
-            name: schema::SCENARIO.to_owned(),
-            media_type: "application/toml".to_owned(),
-            data: header.scenario.as_bytes().into(),
-        })?;
-        let mut log = LogWriter {
-            path: path.to_owned(),
+        let failed = |source| LogError::write(path, source);
+        let mut writer = options().create(BufWriter::new(file)).map_err(failed)?;
+        let [measures, particles, profiles, states] = begin(&mut writer, header).map_err(failed)?;
+        Ok(LogWriter {
+            file: Background::start(path, writer)?,
             time_scale: header.time_scale,
             columns: header.columns.len(),
-            measures: measures_channel(&mut writer, &header.columns)?,
-            particles: channel::<foxglove::PointCloud>(&mut writer, topic::PARTICLES)?,
-            profiles: channel::<grainflow::Profile>(&mut writer, topic::PROFILES)?,
-            states: channel::<grainflow::State>(&mut writer, topic::STATE)?,
-            writer,
-        };
-        if let Some(walls) = &header.walls {
-            let mut channel = channel::<foxglove::SceneUpdate>(&mut log.writer, topic::WALLS)?;
-            channel.write(&mut log.writer, start, &scene(walls, start).encode_to_vec())?;
-        }
-        log.writer.flush()?;
-        Ok(log)
+            measures,
+            particles,
+            profiles,
+            states,
+        })
     }
 
     /// Where the log is written.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.file.path()
     }
 
-    /// Writes one recording and flushes it.
+    /// Gives one recording to be written and flushed.
     pub fn recording(&mut self, recording: &Recording<'_>) -> Result<(), LogError> {
         assert_eq!(recording.values.len(), self.columns, "a value for every column");
-        self.checked(|log| {
-            let message = MeasuresMessage {
-                values: recording.values.to_vec(),
-                state_hash: recording.state_hash.to_owned(),
-                grains: recording.frame.grains,
-            };
-            let tick = tick(recording.values[0], log.time_scale);
-            log.measures.write(&mut log.writer, tick, &message.encode())?;
-            for profile in recording.profiles {
-                log.write_profile(profile)?;
-            }
-            // After the measures: a frame that is there has its time there, too.
-            let cloud = point_cloud(recording.frame, tick);
-            log.particles.write(&mut log.writer, tick, &cloud.encode_to_vec())?;
-            log.writer.flush()
-        })
+        let message = MeasuresMessage {
+            values: recording.values.to_vec(),
+            state_hash: recording.state_hash.to_owned(),
+            grains: recording.frame.grains,
+        };
+        let tick = tick(recording.values[0], self.time_scale);
+        let mut messages = vec![self.measures.message(tick, message.encode())];
+        messages.extend(recording.profiles.iter().map(|profile| self.profile_message(profile)));
+        // After the measures: a frame that is there has its time there, too.
+        let cloud = point_cloud(recording.frame, tick);
+        messages.push(self.particles.message(tick, cloud.encode_to_vec()));
+        self.file.write(messages, true)
     }
 
-    /// Writes a profile of the whole run.
+    /// Gives a profile of the whole run to be written.
     pub fn profile(&mut self, profile: &Profile) -> Result<(), LogError> {
-        self.checked(|log| log.write_profile(profile))
+        let message = self.profile_message(profile);
+        self.file.write(vec![message], false)
     }
 
-    /// Writes a saved state and flushes it.
+    /// Gives a saved state to be written and flushed.
     pub fn state<V: Vector>(&mut self, state: &SavedState<'_, V>) -> Result<(), LogError> {
-        self.checked(|log| {
-            let tick = tick(state.time, log.time_scale);
-            for rows in saved::parts(state) {
-                log.states.write(&mut log.writer, tick, &saved::part(state, rows).encode_to_vec())?;
-            }
-            log.writer.flush()
-        })
+        let tick = tick(state.time, self.time_scale);
+        // Part by part: only a few of a large state wait in memory.
+        let mut parts = saved::parts(state).peekable();
+        while let Some(rows) = parts.next() {
+            let part = self.states.message(tick, saved::part(state, rows).encode_to_vec());
+            self.file.write(vec![part], parts.peek().is_none())?;
+        }
+        Ok(())
     }
 
-    /// Hands everything written so far to the system.
+    /// Waits until everything given so far is handed to the system.
     pub fn flush(&mut self) -> Result<(), LogError> {
-        self.checked(|log| log.writer.flush())
+        self.file.flush()
+    }
+
+    /// Whether everything that was tried so far could be written; waits for nothing.
+    pub fn check(&mut self) -> Result<(), LogError> {
+        self.file.check()
     }
 
     /// Ends the log: statistics and index, and everything on the disk.
-    pub fn finish(mut self) -> Result<(), LogError> {
-        self.checked(|log| log.writer.finish().map(drop))?;
-        let LogWriter { path, writer, .. } = self;
-        let mut file = writer.into_inner();
-        file.flush().and_then(|()| file.get_ref().sync_all()).map_err(|source| LogError::write(&path, source))
+    pub fn finish(self) -> Result<(), LogError> {
+        self.file.finish()
     }
 
-    fn checked(&mut self, write: impl FnOnce(&mut Self) -> mcap::McapResult<()>) -> Result<(), LogError> {
-        write(self).map_err(|source| LogError::write(&self.path, source))
-    }
-
-    fn write_profile(&mut self, profile: &Profile) -> mcap::McapResult<()> {
+    fn profile_message(&mut self, profile: &Profile) -> Encoded {
         let column = |(column, values): (&Column, &Vec<f64>)| grainflow::ProfileColumn {
             name: column.name.clone(),
             unit: unit_text(column.unit),
@@ -188,31 +164,50 @@ impl LogWriter {
             name: profile.name.clone(),
             columns: profile.columns.iter().zip(&profile.values).map(column).collect(),
         };
-        let tick = tick(profile.time, self.time_scale);
-        self.profiles.write(&mut self.writer, tick, &message.encode_to_vec())
+        self.profiles.message(tick(profile.time, self.time_scale), message.encode_to_vec())
     }
 }
 
 impl Channel {
-    /// Writes a message; its tick is never before that of an earlier one.
-    fn write(
-        &mut self,
-        writer: &mut mcap::Writer<BufWriter<File>>,
-        tick: u64,
-        data: &[u8],
-    ) -> mcap::McapResult<()> {
-        let tick = tick.max(self.last_tick);
+    /// The next message; its tick is never before that of an earlier one.
+    fn message(&mut self, tick: u64, data: Vec<u8>) -> Encoded {
+        self.last_tick = tick.max(self.last_tick);
         let header = MessageHeader {
             channel_id: self.id,
             sequence: self.sequence,
-            log_time: tick,
-            publish_time: tick,
+            log_time: self.last_tick,
+            publish_time: self.last_tick,
         };
-        writer.write_to_known_channel(&header, data)?;
         self.sequence += 1;
-        self.last_tick = tick;
-        Ok(())
+        Encoded { header, data }
     }
+}
+
+/// Writes everything that is known before the first step, and flushes it. The channels of measures, particles,
+/// profiles and states.
+fn begin(writer: &mut FileWriter, header: &LogHeader) -> mcap::McapResult<[Channel; 4]> {
+    writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
+    let start = tick(header.start, header.time_scale);
+    writer.attach(&mcap::Attachment {
+        log_time: start,
+        create_time: start,
+        name: schema::SCENARIO.to_owned(),
+        media_type: "application/toml".to_owned(),
+        data: header.scenario.as_bytes().into(),
+    })?;
+    let channels = [
+        measures_channel(writer, &header.columns)?,
+        channel::<foxglove::PointCloud>(writer, topic::PARTICLES)?,
+        channel::<grainflow::Profile>(writer, topic::PROFILES)?,
+        channel::<grainflow::State>(writer, topic::STATE)?,
+    ];
+    if let Some(walls) = &header.walls {
+        let mut channel = channel::<foxglove::SceneUpdate>(writer, topic::WALLS)?;
+        let Encoded { header, data } = channel.message(start, scene(walls, start).encode_to_vec());
+        writer.write_to_known_channel(&header, &data)?;
+    }
+    writer.flush()?;
+    Ok(channels)
 }
 
 /// The same bytes on every machine: one compression thread, no seeking back; a chunk that is not
@@ -233,19 +228,13 @@ fn metadata(header: &LogHeader) -> BTreeMap<String, String> {
     metadata
 }
 
-fn channel<M: Described>(
-    writer: &mut mcap::Writer<BufWriter<File>>,
-    topic: &str,
-) -> mcap::McapResult<Channel> {
+fn channel<M: Described>(writer: &mut FileWriter, topic: &str) -> mcap::McapResult<Channel> {
     let schema = writer.add_schema(&M::TABLE.full_name(), "protobuf", &descriptor_set(&M::TABLE))?;
     let id = writer.add_channel(schema, topic, "protobuf", &BTreeMap::new())?;
     Ok(Channel { id, sequence: 0, last_tick: 0 })
 }
 
-fn measures_channel(
-    writer: &mut mcap::Writer<BufWriter<File>>,
-    columns: &[Column],
-) -> mcap::McapResult<Channel> {
+fn measures_channel(writer: &mut FileWriter, columns: &[Column]) -> mcap::McapResult<Channel> {
     let schema = writer.add_schema(measures::NAME, "protobuf", &measures::descriptor_set(columns))?;
     let id = writer.add_channel(schema, topic::MEASURES, "protobuf", &measures::units(columns))?;
     Ok(Channel { id, sequence: 0, last_tick: 0 })

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::NUMERICS;
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
-use crate::observe::measure::{Column, Dimension, Figure, Profile};
+use crate::observe::measure::{Column, Dimension, Figure, Measure, Place, Profile, Snapshot};
 use crate::record::contents::Walls;
 use crate::record::error::LogError;
 use crate::record::frame::frame;
@@ -24,8 +24,8 @@ pub(super) struct Recorder {
     states: Spread,
     recordings: u64,
     states_saved: u64,
-    /// Time, steps and events at the last recording.
-    last_recorded: Option<(f64, u64, u64)>,
+    /// Which state was recorded last.
+    last_recorded: Option<Place>,
     recorded: Recorded,
     /// `[measure]`: whether its series and profiles are stored.
     stored: Vec<bool>,
@@ -87,11 +87,13 @@ impl Recorder {
         recording.min(simulation.horizon_of(self.states, self.states_saved))
     }
 
-    /// Makes the recording and saves the state that are due, if any.
+    /// Makes the recording and saves the state that are due, if any. Also tells of what could not be written since the
+    /// last step.
     pub(super) fn record_if_due<V: Vector>(
         &mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<(), LogError> {
+        self.writer.check()?;
         let (time, progress) = (simulation.gas().time(), simulation.progress());
         if self.frames.is_due(self.recordings, time, progress) {
             self.record(simulation)?;
@@ -109,7 +111,7 @@ impl Recorder {
         mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Recorded, LogError> {
-        if self.last_recorded != Some(place(simulation)) {
+        if self.last_recorded != Some(simulation.observation().1.place()) {
             self.record(simulation)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
@@ -134,16 +136,17 @@ impl Recorder {
 
     fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
         let most_points = simulation.scenario().record.points.map(|points| points as usize);
-        let hash = state_hash(simulation.gas());
-        let place = place(simulation);
         let (measures, snapshot) = simulation.observation();
-        let mut values = vec![snapshot.gas.time()];
-        let mut profiles = Vec::new();
-        for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
-            values.extend(measure.values(&snapshot));
-            profiles.extend(measure.profiles(&snapshot));
-        }
-        let frame = frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+        let stored = &self.stored;
+        let (hash, ((values, profiles), frame)) = rayon::join(
+            || state_hash(snapshot.gas),
+            || {
+                (
+                    look(measures, stored, &snapshot),
+                    frame(snapshot.gas.time(), snapshot.gas.columns(), most_points),
+                )
+            },
+        );
         self.writer.recording(&Recording {
             values: &values,
             state_hash: &hash,
@@ -152,15 +155,23 @@ impl Recorder {
         })?;
         self.recorded.series.push(values);
         self.recorded.profiles.extend(profiles);
-        self.last_recorded = Some(place);
+        self.last_recorded = Some(snapshot.place());
         Ok(())
     }
 }
 
-/// Time, steps and events: two states of a run that agree in them are the same.
-fn place<V: Vector>(simulation: &Simulation<'_, V>) -> (f64, u64, u64) {
-    let totals = simulation.totals();
-    (simulation.gas().time(), totals.steps, totals.events.all)
+/// Values of the series and profiles of all measures that are stored.
+fn look<V: Vector>(
+    measures: &mut [Box<dyn Measure<V>>],
+    stored: &[bool],
+    snapshot: &Snapshot<'_, V>,
+) -> (Vec<f64>, Vec<Profile>) {
+    let (mut values, mut profiles) = (vec![snapshot.gas.time()], Vec::new());
+    for (measure, _) in measures.iter_mut().zip(stored).filter(|(_, stored)| **stored) {
+        values.extend(measure.values(snapshot));
+        profiles.extend(measure.profiles(snapshot));
+    }
+    (values, profiles)
 }
 
 fn spread(plan: &RecordPlan) -> Spread {
