@@ -13,6 +13,7 @@ use super::background::{Background, Encoded, FileWriter};
 use super::contents::{Frame, Walls};
 use super::error::LogError;
 use super::frame::point_cloud;
+use super::grids;
 use super::saved;
 use super::schema::descriptor::descriptor_set;
 use super::schema::measures::{self, MeasuresMessage};
@@ -21,6 +22,7 @@ use super::schema::{self, Described, foxglove, grainflow, topic};
 use super::state::SavedState;
 use super::time_scale::tick;
 use super::walls::scene;
+use crate::observe::field::{Field, Quantity};
 use crate::observe::measure::{Column, Profile};
 use crate::space::Vector;
 
@@ -35,6 +37,8 @@ pub struct LogHeader {
     pub columns: Vec<Column>,
     /// The box and its walls.
     pub walls: Option<Walls>,
+    /// Fields that will be recorded, and the dimension of their space.
+    pub fields: (Vec<Quantity>, usize),
     /// When the run begins: 0, or where it was resumed [time].
     pub start: f64,
     /// Ticks per unit of time, from [`super::time_scale::time_scale`].
@@ -48,10 +52,14 @@ pub struct Recording<'a> {
     pub values: &'a [f64],
     /// The state hash in hexadecimal digits.
     pub state_hash: &'a str,
+    /// Grains in the gas.
+    pub grains: u64,
     /// Profiles of this moment.
     pub profiles: &'a [Profile],
-    /// The picture of this moment.
-    pub frame: &'a Frame,
+    /// The picture of this moment, if there is one.
+    pub frame: Option<&'a Frame>,
+    /// Fields of this moment, of those that the header names.
+    pub fields: &'a [Field],
 }
 
 /// A log that is being written, by a thread of its own. Without [`LogWriter::finish`] it has no end.
@@ -67,6 +75,8 @@ pub struct LogWriter {
     particles: Channel,
     profiles: Channel,
     states: Channel,
+    /// By the name of the field.
+    fields: Vec<(&'static str, Channel)>,
 }
 
 /// A channel and where it stands.
@@ -86,7 +96,7 @@ impl LogWriter {
         let file = File::create(path).map_err(|source| LogError::Create { path: path.to_owned(), source })?;
         let failed = |source| LogError::write(path, source);
         let mut writer = options().create(BufWriter::new(file)).map_err(failed)?;
-        let [measures, particles, profiles, states] = begin(&mut writer, header).map_err(failed)?;
+        let ([measures, particles, profiles, states], fields) = begin(&mut writer, header).map_err(failed)?;
         Ok(LogWriter {
             file: Background::start(path, writer)?,
             time_scale: header.time_scale,
@@ -95,6 +105,7 @@ impl LogWriter {
             particles,
             profiles,
             states,
+            fields,
         })
     }
 
@@ -109,14 +120,20 @@ impl LogWriter {
         let message = MeasuresMessage {
             values: recording.values.to_vec(),
             state_hash: recording.state_hash.to_owned(),
-            grains: recording.frame.grains,
+            grains: recording.grains,
         };
         let tick = tick(recording.values[0], self.time_scale);
+        let sequence = self.measures.sequence;
         let mut messages = vec![self.measures.message(tick, message.encode())];
         messages.extend(recording.profiles.iter().map(|profile| self.profile_message(profile)));
         // After the measures: a frame that is there has its time there, too.
-        let cloud = point_cloud(recording.frame, tick);
-        messages.push(self.particles.message(tick, cloud.encode_to_vec()));
+        let cloud = recording.frame.map(|frame| point_cloud(frame, tick).encode_to_vec());
+        messages.extend(cloud.map(|cloud| self.particles.message_of(sequence, tick, cloud)));
+        for field in recording.fields {
+            let known = self.fields.iter_mut().find(|(name, _)| *name == field.name);
+            let (_, channel) = known.expect("the header names every field that is recorded");
+            messages.push(channel.message_of(sequence, tick, grids::encode(field, tick)));
+        }
         self.file.write(messages, true)
     }
 
@@ -181,11 +198,19 @@ impl Channel {
         self.sequence += 1;
         Encoded { header, data }
     }
+
+    /// A message that belongs to the recording `sequence`, where that was not the last one's.
+    fn message_of(&mut self, sequence: u32, tick: u64, data: Vec<u8>) -> Encoded {
+        self.sequence = sequence;
+        self.message(tick, data)
+    }
 }
 
-/// Writes everything that is known before the first step, and flushes it. The channels of measures, particles,
-/// profiles and states.
-fn begin(writer: &mut FileWriter, header: &LogHeader) -> mcap::McapResult<[Channel; 4]> {
+/// The channels of measures, particles, profiles and states, and those of fields by name.
+type Channels = ([Channel; 4], Vec<(&'static str, Channel)>);
+
+/// Writes everything that is known before the first step, and flushes it.
+fn begin(writer: &mut FileWriter, header: &LogHeader) -> mcap::McapResult<Channels> {
     writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
     let start = tick(header.start, header.time_scale);
     writer.attach(&mcap::Attachment {
@@ -206,8 +231,13 @@ fn begin(writer: &mut FileWriter, header: &LogHeader) -> mcap::McapResult<[Chann
         let Encoded { header, data } = channel.message(start, scene(walls, start).encode_to_vec());
         writer.write_to_known_channel(&header, &data)?;
     }
+    let (quantities, dimension) = &header.fields;
+    let mut fields = Vec::new();
+    for &quantity in quantities {
+        fields.push((quantity.name(), field_channel(writer, quantity, *dimension)?));
+    }
     writer.flush()?;
-    Ok(channels)
+    Ok((channels, fields))
 }
 
 /// The same bytes on every machine: one compression thread, no seeking back; a chunk that is not
@@ -229,9 +259,26 @@ fn metadata(header: &LogHeader) -> BTreeMap<String, String> {
 }
 
 fn channel<M: Described>(writer: &mut FileWriter, topic: &str) -> mcap::McapResult<Channel> {
+    channel_with::<M>(writer, topic, &BTreeMap::new())
+}
+
+fn channel_with<M: Described>(
+    writer: &mut FileWriter,
+    topic: &str,
+    metadata: &BTreeMap<String, String>,
+) -> mcap::McapResult<Channel> {
     let schema = writer.add_schema(&M::TABLE.full_name(), "protobuf", &descriptor_set(&M::TABLE))?;
-    let id = writer.add_channel(schema, topic, "protobuf", &BTreeMap::new())?;
+    let id = writer.add_channel(schema, topic, "protobuf", metadata)?;
     Ok(Channel { id, sequence: 0, last_tick: 0 })
+}
+
+fn field_channel(writer: &mut FileWriter, quantity: Quantity, dimension: usize) -> mcap::McapResult<Channel> {
+    let topic = format!("{}{}", topic::FIELDS, quantity.name());
+    let units = grids::units(&quantity.components(dimension));
+    match dimension {
+        3 => channel_with::<foxglove::VoxelGrid>(writer, &topic, &units),
+        _ => channel_with::<foxglove::Grid>(writer, &topic, &units),
+    }
 }
 
 fn measures_channel(writer: &mut FileWriter, columns: &[Column]) -> mcap::McapResult<Channel> {

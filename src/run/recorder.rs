@@ -1,11 +1,13 @@
 //! Records a run: measures, frames and states at their times, into the log.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use super::NUMERICS;
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
+use crate::observe::field::{Field, field};
 use crate::observe::measure::{Column, Dimension, Figure, Measure, Place, Profile, Snapshot};
 use crate::record::contents::Walls;
 use crate::record::error::LogError;
@@ -66,6 +68,7 @@ impl Recorder {
             scenario: scenario.source_text.clone(),
             columns: columns.clone(),
             walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
+            fields: (scenario.fields().collect(), V::DIMENSION),
             start: 0.0,
             time_scale: expected_time_scale(scenario),
         };
@@ -96,8 +99,13 @@ impl Recorder {
         self.writer.check()?;
         let (time, progress) = (simulation.gas().time(), simulation.progress());
         if self.frames.is_due(self.recordings, time, progress) {
-            self.record(simulation)?;
-            self.recordings = self.frames.next(time, progress).max(self.recordings + 1);
+            let next = self.frames.next(time, progress).max(self.recordings + 1);
+            let shown = match simulation.end_reason() {
+                Some(_) => Shown::ALL,
+                None => Shown::at(self.recordings..next, &simulation.scenario().record),
+            };
+            self.record(simulation, shown)?;
+            self.recordings = next;
         }
         if self.states.is_due(self.states_saved, time, progress) {
             self.writer.state(&simulation.saved_state(self.recordings, self.states_saved))?;
@@ -112,7 +120,7 @@ impl Recorder {
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Recorded, LogError> {
         if self.last_recorded != Some(simulation.observation().1.place()) {
-            self.record(simulation)?;
+            self.record(simulation, Shown::ALL)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
         let (measures, snapshot) = simulation.observation();
@@ -134,42 +142,79 @@ impl Recorder {
         self.writer.finish()
     }
 
-    fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
-        let most_points = simulation.scenario().record.points.map(|points| points as usize);
+    fn record<V: Vector>(
+        &mut self,
+        simulation: &mut Simulation<'_, V>,
+        shown: Shown,
+    ) -> Result<(), LogError> {
+        let scenario = simulation.scenario();
+        let most_points = scenario.record.points.map(|points| points as usize);
+        let quantities = scenario.fields().filter(|_| shown.fields);
+        let fields: Vec<Field> =
+            quantities.map(|one| field(one, simulation.gas(), simulation.cell_counts())).collect();
         let (measures, snapshot) = simulation.observation();
         let stored = &self.stored;
         let (hash, ((values, profiles), frame)) = rayon::join(
             || state_hash(snapshot.gas),
             || {
-                (
-                    look(measures, stored, &snapshot),
-                    frame(snapshot.gas.time(), snapshot.gas.columns(), most_points),
-                )
+                let picture = || frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+                (look(measures, stored, &snapshot, shown.profiles), shown.frame.then(picture))
             },
         );
         self.writer.recording(&Recording {
             values: &values,
             state_hash: &hash,
+            grains: snapshot.gas.len() as u64,
             profiles: &profiles,
-            frame: &frame,
+            frame: frame.as_ref(),
+            fields: &fields,
         })?;
         self.recorded.series.push(values);
         self.recorded.profiles.extend(profiles);
         self.last_recorded = Some(snapshot.place());
+        if shown.fields {
+            simulation.restart_cell_counts();
+        }
         Ok(())
     }
 }
 
-/// Values of the series and profiles of all measures that are stored.
+/// What a recording shows beside the series.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    frame: bool,
+    profiles: bool,
+    fields: bool,
+}
+
+impl Shown {
+    /// Everything.
+    const ALL: Shown = Shown { frame: true, profiles: true, fields: true };
+
+    /// What `plan` asks for at the recording that has these `numbers`: several where a step was longer than the pause.
+    fn at(numbers: Range<u64>, plan: &RecordPlan) -> Self {
+        let is_due = |every: u32| numbers.start.next_multiple_of(u64::from(every)) < numbers.end;
+        Shown {
+            frame: is_due(plan.frames_every),
+            profiles: is_due(plan.profiles_every),
+            fields: is_due(plan.fields_every),
+        }
+    }
+}
+
+/// Values of the series of all measures that are stored, and their profiles where those are wanted.
 fn look<V: Vector>(
     measures: &mut [Box<dyn Measure<V>>],
     stored: &[bool],
     snapshot: &Snapshot<'_, V>,
+    with_profiles: bool,
 ) -> (Vec<f64>, Vec<Profile>) {
     let (mut values, mut profiles) = (vec![snapshot.gas.time()], Vec::new());
     for (measure, _) in measures.iter_mut().zip(stored).filter(|(_, stored)| **stored) {
         values.extend(measure.values(snapshot));
-        profiles.extend(measure.profiles(snapshot));
+        if with_profiles {
+            profiles.extend(measure.profiles(snapshot));
+        }
     }
     (values, profiles)
 }
