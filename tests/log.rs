@@ -395,7 +395,7 @@ fn expected_field<V: Vector>(
 
 /// Writes fields of placed grains, one of them in a cell of its own, and reads them back.
 fn fields_are_exact<V: Vector>(cells: [u32; 3]) {
-    let grid: Grid<V> = Grid::new(V::ZERO, V::splat(8.0), &cells, &[true, false, true]);
+    let grid: Grid<V> = Grid::new(V::ZERO, V::from_fn(|_| 8.0), &cells, &[true, false, true]);
     let mut grains = Columns::default();
     // Quarters and whole numbers: sums are exact. Nobody is in the cells of large x.
     for id in 0..90_u32 {
@@ -405,7 +405,7 @@ fn fields_are_exact<V: Vector>(cells: [u32; 3]) {
         grains.velocities.push(V::from_fn(|axis| f64::from((id * [3, 5, 13][axis]) % 8)));
         grains.ids.push(id);
     }
-    grains.positions[0] = V::splat(7.75);
+    grains.positions[0] = V::from_fn(|_| 7.75);
     let grain = Grain { diameter: 1.0, mass: 2.0 };
     let time = 0.1 + 0.2;
     let gas = Gas::restored(grid.clone(), grain, grains.clone(), Clock::restored(time, 0.0), 90);
