@@ -347,7 +347,8 @@ fn fields_change_no_bits_and_miss_nothing() {
             let seldom = format!("record.fields={{ names = {all}, every_nth = 3 }}");
             let sets = ["record.frames=10", "record.states=1"];
             let plain = run_into(&place.path().join(&small.name).join("plain"), &small.with(&sets));
-            let scenario = small.with(&[&sets[..], &[&seldom]].concat());
+            let few = "record.particles={ every_nth = 4, points = 50 }";
+            let scenario = small.with(&[&sets[..], &[&seldom, few]].concat());
             let with =
                 with_threads(2, || run_into(&place.path().join(&small.name).join("fields"), &scenario));
             let [plain_log, log] =
@@ -355,6 +356,13 @@ fn fields_change_no_bits_and_miss_nothing() {
             assert_eq!(plain_log.state_hashes, log.state_hashes, "{}", small.name);
             // Recordings 0, 3, 6, 9 and the end.
             assert_eq!((plain_log.fields.len(), log.fields.len()), (0, 6 * 5), "{}", small.name);
+            assert_eq!((plain_log.series.len(), log.series.len()), (11, 11), "{}", small.name);
+            // Recordings 0, 4, 8 and the end.
+            let of = |k: usize| log.series[k][0];
+            let times: Vec<f64> = log.frames.iter().map(|frame| frame.time).collect();
+            assert_eq!(times, [of(0), of(4), of(8), of(10)], "{}", small.name);
+            assert!(log.frames.iter().all(|frame| frame.ids.len() == 50 && frame.grains > 1000));
+            assert_eq!(plain_log.frames.len(), 11, "{}", small.name);
             let collisions = with.summary["collisions"].as_f64().unwrap();
             assert_eq!(counted(&log, "collisions", f64::INFINITY), collisions, "{}", small.name);
             let path = with.folder.join("log.mcap");
