@@ -1,18 +1,15 @@
 //! Logs come back as they were written, and damage to them is never silent.
 #![expect(clippy::unwrap_used, reason = "functions that tests call stop the test like the tests themselves")]
 
+mod log_fields;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use grainflow::engine::EngineState;
-use grainflow::engine::cell_counts::CellCount;
-use grainflow::matter::clock::Clock;
 use grainflow::matter::columns::Columns;
-use grainflow::matter::gas::Gas;
-use grainflow::matter::grain::Grain;
-use grainflow::matter::grid::Grid;
-use grainflow::observe::field::{Field, Quantity, field};
+use grainflow::observe::field::Quantity;
 use grainflow::observe::measure::{Column, Dimension, Profile};
 use grainflow::record::contents::{Frame, RunLog, Walls};
 use grainflow::record::error::LogError;
@@ -23,6 +20,7 @@ use grainflow::record::state::SavedState;
 use grainflow::record::time_scale::time_scale;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
 use grainflow::space::Vector;
+use log_fields::fields;
 use proptest::prelude::*;
 
 const RECORDINGS: usize = 6;
@@ -62,14 +60,6 @@ fn grains(count: u32, time: f64) -> Columns<DVec2> {
         columns.ids.push(id);
     }
     columns
-}
-
-/// Density and velocity of the sample's grains.
-fn fields(time: f64) -> Vec<Field> {
-    let grid = Grid::new(DVec2::ZERO, DVec2::new(40.0, 20.0), &[8, 5], &[true, false]);
-    let grain = Grain { diameter: 1.0, mass: 1.0 };
-    let gas = Gas::restored(grid, grain, grains(300, time), Clock::restored(time, 0.0), 300);
-    [Quantity::Density, Quantity::Velocity].map(|quantity| field(quantity, &gas, &[])).to_vec()
 }
 
 fn profile(name: &str, time: f64) -> Profile {
@@ -114,7 +104,7 @@ fn write_sample(path: &Path) -> RunLog {
         let profiles = [profile("velocity-profile", time)];
         // Not every recording has a frame or fields.
         let picture = (index != 3).then_some(picture);
-        let fields = if index % 2 == 1 { fields(time) } else { Vec::new() };
+        let fields = if index % 2 == 1 { fields(grains(300, time), time) } else { Vec::new() };
         let recording = Recording {
             values: &row,
             state_hash: &hash,
@@ -344,130 +334,6 @@ fn a_full_disk_stops_the_log() {
         Err(error) => error,
     };
     assert!(error.to_string().contains("/dev/full"), "{error}");
-}
-
-/// Once something could not be written every call says so, and nothing waits for ever.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_log_that_fails_goes_on_failing() {
-    let folder = folder();
-    let path = folder.path().join("pipe");
-    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
-    // A pipe whose reader goes away when it is told to.
-    let (go, wait) = std::sync::mpsc::channel::<()>();
-    let reader = std::thread::spawn({
-        let path = path.clone();
-        move || {
-            let pipe = std::fs::File::open(path).unwrap();
-            wait.recv().unwrap();
-            drop(pipe);
-        }
-    });
-    let mut log = LogWriter::create(&path, &header()).unwrap();
-    log.check().unwrap();
-    go.send(()).unwrap();
-    reader.join().unwrap();
-    let large = state(300_000, 0.25);
-    // The first may be given before it is known that it cannot be written; four bundles do not find room.
-    let errors = (0..6).filter(|_| log.state(&large).is_err()).count();
-    assert!(errors >= 2, "{errors}");
-    assert!(log.check().unwrap_err().to_string().contains("pipe"));
-    assert!(log.flush().is_err() && log.finish().is_err());
-}
-
-/// What a cell should show, by another way: grains are looked for by their places.
-fn expected_field<V: Vector>(
-    quantity: Quantity,
-    grid: &Grid<V>,
-    grains: &Columns<V>,
-    mass: f64,
-) -> Vec<Vec<f32>> {
-    let mut values = vec![Vec::new(); quantity.components(V::DIMENSION).len()];
-    for cell in 0..grid.number_of_cells() as u32 {
-        let inside = |row: &usize| {
-            let away = grains.positions[*row] - grid.centre(cell);
-            (0..V::DIMENSION).all(|axis| {
-                let half = 0.5 * grid.side()[axis];
-                away[axis] >= -half && away[axis] < half
-            })
-        };
-        let rows: Vec<usize> = (0..grains.len()).filter(inside).collect();
-        let number = rows.len() as f64;
-        let mean = rows.iter().fold(V::ZERO, |sum, &row| sum + grains.velocities[row]) * (1.0 / number);
-        let squares: f64 = rows.iter().map(|&row| (grains.velocities[row] - mean).length_squared()).sum();
-        match quantity {
-            Quantity::Density => {
-                values[0].push((number * V::sphere_volume(1.0) / grid.cell_volume()) as f32);
-            }
-            Quantity::Velocity => (0..V::DIMENSION).for_each(|axis| values[axis].push(mean[axis] as f32)),
-            Quantity::Temperature => values[0].push((mass * squares / number / V::DIMENSION as f64) as f32),
-            _ => unreachable!("the others are counted"),
-        }
-    }
-    values
-}
-
-/// Writes fields of placed grains, one of them in a cell of its own, and reads them back.
-fn fields_are_exact<V: Vector>(cells: [u32; 3]) {
-    let grid: Grid<V> = Grid::new(V::ZERO, V::from_fn(|_| 8.0), &cells, &[true, false, true]);
-    let mut grains = Columns::default();
-    // Quarters and whole numbers: sums are exact. Nobody is in the cells of large x.
-    for id in 0..90_u32 {
-        let place = |axis: usize| f64::from((id * [5, 11, 7][axis] + axis as u32) % 32) / 4.0;
-        let position = V::from_fn(|axis| if axis == 0 { place(0) * 0.5 } else { place(axis) });
-        grains.positions.push(position);
-        grains.velocities.push(V::from_fn(|axis| f64::from((id * [3, 5, 13][axis]) % 8)));
-        grains.ids.push(id);
-    }
-    grains.positions[0] = V::from_fn(|_| 7.75);
-    let grain = Grain { diameter: 1.0, mass: 2.0 };
-    let time = 0.1 + 0.2;
-    let gas = Gas::restored(grid.clone(), grain, grains.clone(), Clock::restored(time, 0.0), 90);
-    let counts: Vec<CellCount> = (0..grid.number_of_cells() as u64)
-        .map(|cell| CellCount { collisions: cell, attempts: 3 * cell, bound: 0.5 * cell as f64 })
-        .collect();
-    let written = Quantity::ALL.map(|quantity| field(quantity, &gas, &counts));
-    let folder = folder();
-    let path = folder.path().join("log.mcap");
-    let header = LogHeader { fields: (Quantity::ALL.to_vec(), V::DIMENSION), ..header() };
-    let mut log = LogWriter::create(&path, &header).unwrap();
-    let recording = Recording {
-        values: &[time, 0.0, 0.0],
-        state_hash: "",
-        grains: 90,
-        profiles: &[],
-        frame: None,
-        fields: &written,
-    };
-    log.recording(&recording).unwrap();
-    log.finish().unwrap();
-    let log = read_log(&path).unwrap();
-    assert!(log.frames.is_empty() && log.fields.len() == 6);
-    let near = |a: f32, b: f32| (a.is_nan() && b.is_nan()) || (a - b).abs() <= 2.0 * f32::EPSILON * b.abs();
-    for (quantity, read) in Quantity::ALL.into_iter().zip(&log.fields) {
-        assert_eq!((read.name.as_str(), read.time), (quantity.name(), time));
-        assert_eq!((read.cells, read.components.clone()), (cells, quantity.components(V::DIMENSION)));
-        assert!(
-            (0..3).all(|axis| read.side[axis] == if axis < V::DIMENSION { grid.side()[axis] } else { 0.0 })
-        );
-        let values = match quantity {
-            Quantity::Collisions => vec![counts.iter().map(|count| count.collisions as f32).collect()],
-            Quantity::Attempts => vec![counts.iter().map(|count| count.attempts as f32).collect()],
-            Quantity::Bound => vec![counts.iter().map(|count| count.bound as f32).collect()],
-            other => expected_field(other, &grid, &grains, 2.0),
-        };
-        let pairs = read.values.iter().flatten().zip(values.iter().flatten());
-        assert_eq!(values.iter().flatten().count(), read.values.iter().flatten().count());
-        assert!(pairs.clone().all(|(&a, &b)| near(a, b)), "{}: {:?} {values:?}", read.name, read.values);
-        let empty = pairs.filter(|(a, _)| a.is_nan()).count();
-        assert_eq!(empty > 0, matches!(quantity, Quantity::Velocity | Quantity::Temperature));
-    }
-}
-
-#[test]
-fn fields_in_the_log_are_those_of_the_grains() {
-    fields_are_exact::<DVec2>([4, 2, 1]);
-    fields_are_exact::<DVec3>([4, 2, 3]);
 }
 
 #[test]

@@ -156,3 +156,32 @@ fn work(mut writer: FileWriter, orders: &Receiver<Order>) -> mcap::McapResult<Fi
     }
     Ok(writer)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::writer::options;
+
+    #[test]
+    fn once_something_could_not_be_written_everybody_is_told() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        // Opened for reading alone: the system takes nothing.
+        let closed = File::open(file.path()).unwrap();
+        let writer = options().create(BufWriter::new(closed)).unwrap();
+        let mut log = Background::start(file.path(), writer).unwrap();
+        // A few bundles are taken before it shows; nobody waits for ever.
+        let refused = (0..WAITING + 4).filter(|_| log.write(Vec::new(), true).is_err()).count();
+        assert!(refused >= 2, "{refused}");
+        assert!(log.check().is_err() && log.flush().is_err());
+        assert!(log.finish().is_err());
+    }
+
+    #[test]
+    fn the_first_to_ask_hears_the_reason() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let writer = options().create(BufWriter::new(File::open(file.path()).unwrap())).unwrap();
+        let mut log = Background::start(file.path(), writer).unwrap();
+        let said = log.flush().unwrap_err().to_string();
+        assert!(said.contains("cannot write to the log") && said.contains("os error"), "{said}");
+    }
+}

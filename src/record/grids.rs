@@ -142,35 +142,36 @@ mod tests {
     use super::*;
     use crate::observe::field::Quantity;
 
-    fn sample(dimension: usize) -> Field {
-        let cells = if dimension == 2 { [3, 2, 1] } else { [3, 2, 4] };
+    /// A velocity on a grid of three by two cells, so many of them deep.
+    fn sample(layers: Option<u32>) -> Field {
+        let dimension = if layers.is_some() { 3 } else { 2 };
+        let cells = [3, 2, layers.unwrap_or(1)];
         let number = cells.iter().product::<u32>();
-        let components = Quantity::Velocity.components(dimension);
         let value = |component: usize, cell: u32| component as f32 * 100.0 + cell as f32;
+        let (lower, depth) = if layers.is_some() { (7.0, 0.25) } else { (0.0, 0.0) };
         Field {
-            origin: [-0.5, 1e-9, if dimension == 2 { 0.0 } else { 7.0 }],
-            side: [1.0 / 3.0, 2.0, if dimension == 2 { 0.0 } else { 0.25 }],
+            origin: [-0.5, 1e-9, lower],
+            side: [1.0 / 3.0, 2.0, depth],
             cells,
+            components: Quantity::Velocity.components(dimension),
             values: (0..dimension).map(|k| (0..number).map(|cell| value(k, cell)).collect()).collect(),
-            components,
             ..Default::default()
         }
     }
 
     #[test]
     fn a_field_comes_back_from_its_grid() {
-        for dimension in [2, 3] {
-            let field = sample(dimension);
-            let units = units(&field.components);
-            let bytes = encode(&field, 7);
-            assert_eq!(decode(&bytes, dimension == 3, &units), Some(field));
-            assert_eq!(decode(&bytes, dimension == 3, &BTreeMap::new()), None, "without units");
+        for layers in [None, Some(4)] {
+            let field = sample(layers);
+            let (units, bytes) = (units(&field.components), encode(&field, 7));
+            assert_eq!(decode(&bytes, layers.is_some(), &BTreeMap::new()), None, "without units");
+            assert_eq!(decode(&bytes, layers.is_some(), &units), Some(field));
         }
     }
 
     #[test]
     fn grids_that_do_not_fit_are_refused() {
-        let field = sample(3);
+        let field = sample(Some(4));
         let units = units(&field.components);
         let good = VoxelGrid::decode(encode(&field, 7).as_slice()).unwrap();
         let mut short = good.clone();
