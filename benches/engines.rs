@@ -64,7 +64,14 @@ fn log(criterion: &mut Criterion) {
         b.iter(|| {
             time += 1.0;
             let frame = frame(time, &columns, None);
-            let recording = Recording { values: &[time], state_hash: "00", profiles: &[], frame: &frame };
+            let recording = Recording {
+                values: &[time],
+                state_hash: "00",
+                grains: frame.grains,
+                profiles: &[],
+                frame: Some(&frame),
+                fields: &[],
+            };
             writer.recording(&recording).expect("the log can be written");
         })
     });

@@ -181,6 +181,28 @@ fn an_old_run_stays_unless_a_new_one_is_complete() {
     assert_eq!(code(&place.quick(&["--out", "empty"])), 0);
 }
 
+/// A limit on the size of files stands in for a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_at_once_and_leaves_a_log() {
+    let place = Place::new();
+    let limited = "trap '' XFSZ; ulimit -f 800; exec \"$0\" \"$@\"";
+    let endless =
+        ["--set", "run={time=1e9}", "--set", "record={every=0.01}", "--set", "particles.count=3000"];
+    let output = Command::new("sh")
+        .args(["-c", limited, env!("CARGO_BIN_EXE_grainflow"), "run", "cooling", "--quiet", "--out", "run"])
+        .args(endless)
+        .current_dir(place.0.path())
+        .output()
+        .unwrap();
+    assert_eq!(code(&output), 1, "{}", error(&output));
+    let said = error(&output);
+    assert!(said.contains("cannot write to the log") && said.contains("run/log.mcap"), "{said}");
+    let log = read_log(&place.path("run/log.mcap")).unwrap();
+    assert!(log.series.len() > 3 && log.cut_off.is_some(), "{}", log.series.len());
+    assert!(!place.path("run/summary.json").exists());
+}
+
 #[test]
 fn mistakes_on_the_command_line_are_told_with_a_remedy() {
     let place = Place::new();

@@ -1,12 +1,15 @@
 //! Logs come back as they were written, and damage to them is never silent.
 #![expect(clippy::unwrap_used, reason = "functions that tests call stop the test like the tests themselves")]
 
+mod log_fields;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use grainflow::engine::EngineState;
 use grainflow::matter::columns::Columns;
+use grainflow::observe::field::Quantity;
 use grainflow::observe::measure::{Column, Dimension, Profile};
 use grainflow::record::contents::{Frame, RunLog, Walls};
 use grainflow::record::error::LogError;
@@ -17,6 +20,7 @@ use grainflow::record::state::SavedState;
 use grainflow::record::time_scale::time_scale;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
 use grainflow::space::Vector;
+use log_fields::fields;
 use proptest::prelude::*;
 
 const RECORDINGS: usize = 6;
@@ -42,6 +46,7 @@ fn header() -> LogHeader {
             sides: sides.map(|axis| axis.map(str::to_owned)),
         }),
         earlier: Vec::new(),
+        fields: (vec![Quantity::Density, Quantity::Velocity], 2),
         start: 0.0,
         time_scale: time_scale(0.5, 0.1),
     }
@@ -98,7 +103,17 @@ fn write_sample(path: &Path) -> RunLog {
         // The first recording is of an empty box, as where grains are poured in.
         let picture = frame(time, &grains(if index == 0 { 0 } else { 300 }, time), Some(250));
         let profiles = [profile("velocity-profile", time)];
-        let recording = Recording { values: &row, state_hash: &hash, profiles: &profiles, frame: &picture };
+        // Not every recording has a frame or fields.
+        let picture = (index != 3).then_some(picture);
+        let fields = if index % 2 == 1 { fields(grains(300, time), time) } else { Vec::new() };
+        let recording = Recording {
+            values: &row,
+            state_hash: &hash,
+            grains: if index == 0 { 0 } else { 300 },
+            profiles: &profiles,
+            frame: picture.as_ref(),
+            fields: &fields,
+        };
         log.recording(&recording).unwrap();
         if index % 3 == 2 {
             log.state(&state(300, time)).unwrap();
@@ -106,7 +121,8 @@ fn write_sample(path: &Path) -> RunLog {
         expected.series.push(row);
         expected.state_hashes.push(hash);
         expected.profiles.extend(profiles);
-        expected.frames.push(picture);
+        expected.frames.extend(picture);
+        expected.fields.extend(fields);
     }
     let last = profile("spectrum", 0.5);
     log.profile(&last).unwrap();
@@ -174,9 +190,18 @@ fn an_interrupted_run_keeps_what_it_recorded() {
     let path = folder.path().join("log.mcap");
     let mut log = LogWriter::create(&path, &header()).unwrap();
     let picture = Frame::default();
-    let recording = Recording { values: &[0.0, 1.0, 2.0], state_hash: "", profiles: &[], frame: &picture };
+    let recording = Recording {
+        values: &[0.0, 1.0, 2.0],
+        state_hash: "",
+        grains: 0,
+        profiles: &[],
+        frame: Some(&picture),
+        fields: &[],
+    };
     log.recording(&recording).unwrap();
     log.state(&state(10, 0.0)).unwrap();
+    // What is given is written without being asked for, but a little later.
+    log.flush().unwrap();
     std::mem::forget(log);
     let read = read_log(&path).unwrap();
     assert_eq!(read.series.len(), 1);
@@ -200,6 +225,7 @@ fn wherever_a_log_is_cut_off_the_rest_is_told_from_the_whole() {
                 most = log.series.len();
                 assert_eq!(log.series, expected.series[..most]);
                 assert_eq!(log.frames, expected.frames[..log.frames.len()]);
+                assert_eq!(log.fields, expected.fields[..log.fields.len()]);
             }
             Err(LogError::Empty { .. }) => assert_eq!(length, 0),
             Err(LogError::NotMcap { .. }) => assert!(length < 8),
@@ -252,6 +278,7 @@ fn what_is_sound_in_a_damaged_log_is_recovered() {
         assert!(log.metadata.contains_key("recovered"));
         assert!(log.series.iter().all(|row| expected.series.contains(row)), "byte {place}");
         assert!(log.frames.iter().all(|frame| expected.frames.contains(frame)), "byte {place}");
+        assert!(log.fields.iter().all(|field| expected.fields.contains(field)), "byte {place}");
         assert!(log.series.len() + 1 >= RECORDINGS || recovery.cut_off, "byte {place}: {recovery:?}");
         let states = read_states::<DVec2>(&clean).unwrap();
         assert!(states.iter().all(|found| [state(300, 0.2), state(300, 0.5)].contains(found)));

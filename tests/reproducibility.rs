@@ -8,9 +8,12 @@ mod small_scenarios;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use grainflow::engine::cell_counts::CellCount;
 use grainflow::engine::{Horizon, NoLaps};
+use grainflow::matter::gas::Gas;
 use grainflow::matter::state_hash::state_hash;
 use grainflow::observe::measure::{Column, Dimension};
+use grainflow::record::contents::RunLog;
 use grainflow::record::reader::{last_state, read_log, read_states};
 use grainflow::record::time_scale::time_scale;
 use grainflow::record::writer::{LogHeader, LogWriter};
@@ -280,6 +283,93 @@ fn every_state_in_the_log_of_a_run_leads_to_the_same_end_and_figures() {
                     assert_eq!(outcome.summary[&name].to_string(), value, "{}: {name}", small.name);
                 }
             }
+        }
+    }
+}
+
+/// Everything that an engine counts in cells adds up to what it counts in all.
+fn assert_cells_count_everything<V: Vector>(scenario: &Scenario<V>) {
+    let mut simulation = start(scenario);
+    while simulation.end_reason().is_none() {
+        let before = simulation.gas().clone();
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
+        if simulation.totals().steps == 1 {
+            assert_bounds(&before, simulation.cell_counts());
+        }
+    }
+    let (counts, totals) = (simulation.cell_counts(), &simulation.totals().counts);
+    assert_eq!(counts.iter().map(|count| count.collisions).sum::<u64>(), totals.collisions);
+    assert_eq!(counts.iter().map(|count| count.attempts).sum::<u64>(), totals.candidates);
+    assert!(totals.collisions > 100 && totals.candidates > totals.collisions);
+}
+
+/// The bound of the first step is the diagonal of the box that holds the velocities of a cell.
+fn assert_bounds<V: Vector>(gas: &Gas<V>, counts: &[CellCount]) {
+    for (cell, count) in counts.iter().enumerate() {
+        let velocities = &gas.velocities()[gas.rows(cell as u32)];
+        let extent = |axis: usize| {
+            let components = velocities.iter().map(|velocity| velocity[axis]);
+            components.clone().fold(f64::MIN, f64::max) - components.fold(f64::MAX, f64::min)
+        };
+        let diagonal = V::from_fn(extent).length();
+        let expected = if velocities.len() < 2 { 0.0 } else { diagonal };
+        assert!((count.bound - expected).abs() <= 1e-12 * expected, "{} and {expected}", count.bound);
+    }
+}
+
+/// What fields in a log have counted up to `time`.
+fn counted(log: &RunLog, name: &str, time: f64) -> f64 {
+    let fields = log.fields.iter().filter(|field| field.name == name && field.time <= time);
+    fields.flat_map(|field| field.values.iter().flatten()).map(|&count| f64::from(count)).sum()
+}
+
+/// A restart goes on counting where the last recording of fields had left it.
+fn assert_restart_goes_on_counting<V: Vector>(scenario: &Scenario<V>, log: &Path) {
+    let state = read_states::<V>(log).unwrap().swap_remove(0);
+    let before = counted(&read_log(log).unwrap(), "collisions", state.time);
+    let mut simulation = Simulation::resume(scenario, state);
+    while simulation.end_reason().is_none() {
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
+    }
+    let after: u64 = simulation.cell_counts().iter().map(|count| count.collisions).sum();
+    assert_eq!(before + after as f64, simulation.totals().counts.collisions as f64);
+}
+
+/// With all fields, seldom or often, a run is the same to the last bit; fields miss no collision.
+#[test]
+fn fields_change_no_bits_and_miss_nothing() {
+    let place = tempfile::tempdir().unwrap();
+    for dimension in [2, 3] {
+        for small in
+            [gas(dimension, "dsmc", false), gas(dimension, "cba", true), gas(dimension, "hsmc", false)]
+        {
+            let all = "[\"density\", \"velocity\", \"temperature\", \"collisions\", \"attempts\", \"bound\"]";
+            let seldom = format!("record.fields={{ names = {all}, every_nth = 3 }}");
+            let sets = ["record.frames=10", "record.states=1"];
+            let plain = run_into(&place.path().join(&small.name).join("plain"), &small.with(&sets));
+            let few = "record.particles={ every_nth = 4, points = 50 }";
+            let scenario = small.with(&[&sets[..], &[&seldom, few]].concat());
+            let with =
+                with_threads(2, || run_into(&place.path().join(&small.name).join("fields"), &scenario));
+            let [plain_log, log] =
+                [&plain, &with].map(|outcome| read_log(&outcome.folder.join("log.mcap")).unwrap());
+            assert_eq!(plain_log.state_hashes, log.state_hashes, "{}", small.name);
+            // Recordings 0, 3, 6, 9 and the end.
+            assert_eq!((plain_log.fields.len(), log.fields.len()), (0, 6 * 5), "{}", small.name);
+            assert_eq!((plain_log.series.len(), log.series.len()), (11, 11), "{}", small.name);
+            // Recordings 0, 4, 8 and the end.
+            let of = |k: usize| log.series[k][0];
+            let times: Vec<f64> = log.frames.iter().map(|frame| frame.time).collect();
+            assert_eq!(times, [of(0), of(4), of(8), of(10)], "{}", small.name);
+            assert!(log.frames.iter().all(|frame| frame.ids.len() == 50 && frame.grains > 1000));
+            assert_eq!(plain_log.frames.len(), 11, "{}", small.name);
+            let collisions = with.summary["collisions"].as_f64().unwrap();
+            assert_eq!(counted(&log, "collisions", f64::INFINITY), collisions, "{}", small.name);
+            let path = with.folder.join("log.mcap");
+            in_its_space!(&scenario, scenario => {
+                assert_cells_count_everything(scenario);
+                assert_restart_goes_on_counting(scenario, &path);
+            });
         }
     }
 }

@@ -104,11 +104,18 @@ fn recordings_and_restarts_change_no_bits() {
         assert!(expected.1 > 150, "{}: {expected:?}", small.0);
         assert_eq!(expected.3 > 20, small.0 == "heap", "{}: {expected:?}", small.0);
         for frames in ["0", "7", "50"] {
-            let scenario = scenario(&small, &[&format!("record.frames={frames}"), "record.states=3"]);
+            let fields = "record.fields=[\"density\", \"collisions\", \"attempts\"]";
+            let scenario = scenario(&small, &[&format!("record.frames={frames}"), "record.states=3", fields]);
             let outcome = run_into(&place.path().join(small.0).join(frames), &scenario);
             let hash = outcome.summary["state_hash"].as_str().unwrap();
             assert_eq!(hash, expected.0, "{} with {frames} frames", small.0);
             let log = outcome.folder.join("log.mcap");
+            // Exact dynamics draws no candidates; of its collisions none is missed.
+            let fields = read_log(&log).unwrap().fields;
+            let collisions = fields.iter().filter(|field| field.name == "collisions");
+            let counted: f64 = collisions.flat_map(|field| &field.values[0]).map(|&one| f64::from(one)).sum();
+            assert_eq!(counted, outcome.summary["collisions"].as_f64().unwrap(), "{}", small.0);
+            assert!(fields.iter().all(|field| field.name != "attempts"));
             for state in [0, 1, 2] {
                 let end = in_its_space!(&scenario, scenario => resume(scenario, &log, state));
                 assert_eq!(end, expected, "{} with {frames} frames from state {state}", small.0);

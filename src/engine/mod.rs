@@ -1,11 +1,13 @@
 //! Engines: what advances a gas.
 
+pub mod cell_counts;
 pub mod event_driven;
 pub mod report;
 pub mod stochastic;
 
 use crate::matter::gas::Gas;
 use crate::space::Vector;
+use cell_counts::CellCount;
 use report::StepReport;
 
 /// Something that advances a gas.
@@ -30,6 +32,13 @@ pub trait Engine<V: Vector>: Send {
 
     /// Somebody has changed velocities from outside: what the engine knew of them is void.
     fn forget_pace(&mut self);
+
+    /// Counts from now on what happens in each cell of the gas, on top of `counts` `[cell]`. What happens does not
+    /// depend on it.
+    fn count_in_cells(&mut self, counts: Vec<CellCount>);
+
+    /// What was counted `[cell]`; empty where nothing is.
+    fn cell_counts(&self) -> &[CellCount];
 
     /// Grains that make a cell full, for engines with an excluded volume.
     fn capacity(&self, gas: &Gas<V>) -> Option<u32>;

@@ -2,8 +2,14 @@
 
 use sha2::{Digest, Sha256};
 
+use super::fetch::fetch;
 use super::gas::Gas;
 use crate::space::Vector;
+
+/// Grains whose memory is sent for ahead: in rising identity they stand in no order.
+const AHEAD: usize = 16;
+/// Bytes that are hashed at a time.
+const BUFFER: usize = 1 << 14;
 
 /// SHA-256 over, little-endian: dimension u32, N u64, time f64, then for each grain in rising
 /// identity its id u32, position, velocity and spin (if any), as the f64 bits that are held.
@@ -14,9 +20,15 @@ pub fn state_hash<V: Vector>(gas: &Gas<V>) -> String {
     hasher.update((V::DIMENSION as u32).to_le_bytes());
     hasher.update((gas.len() as u64).to_le_bytes());
     hasher.update(gas.time().to_le_bytes());
-    let mut bytes = Vec::with_capacity(80);
-    for row in rows_by_identity(gas) {
-        bytes.clear();
+    let mut bytes = Vec::with_capacity(BUFFER + 80);
+    let rows = rows_by_identity(gas);
+    for (place, &row) in rows.iter().enumerate() {
+        if let Some(&ahead) = rows.get(place + AHEAD) {
+            fetch(&columns.ids[ahead as usize]);
+            fetch(&columns.positions[ahead as usize]);
+            fetch(&columns.velocities[ahead as usize]);
+        }
+        let row = row as usize;
         bytes.extend_from_slice(&columns.ids[row].to_le_bytes());
         for vector in [columns.positions[row], columns.velocities[row]] {
             for axis in 0..V::DIMENSION {
@@ -28,18 +40,23 @@ pub fn state_hash<V: Vector>(gas: &Gas<V>) -> String {
                 bytes.extend_from_slice(&component.to_le_bytes());
             }
         }
-        hasher.update(&bytes);
+        if bytes.len() >= BUFFER {
+            hasher.update(&bytes);
+            bytes.clear();
+        }
     }
+    hasher.update(&bytes);
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The rows of `gas` in rising identity.
-pub fn rows_by_identity<V: Vector>(gas: &Gas<V>) -> impl Iterator<Item = usize> + use<V> {
+pub fn rows_by_identity<V: Vector>(gas: &Gas<V>) -> Vec<u32> {
     let mut rows = vec![u32::MAX; gas.next_id() as usize];
     for (row, &id) in gas.ids().iter().enumerate() {
         rows[id as usize] = row as u32;
     }
-    rows.into_iter().filter(|&row| row != u32::MAX).map(|row| row as usize)
+    rows.retain(|&row| row != u32::MAX);
+    rows
 }
 
 #[cfg(test)]

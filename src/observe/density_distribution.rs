@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::last_look::LastLook;
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_mean};
 use super::units::{PURE, column};
@@ -36,6 +37,7 @@ const VARIANCE: &str = "density_variance_over_poisson";
 #[derive(Clone, Debug)]
 pub struct DensityDistribution {
     samples: Samples,
+    last: LastLook<Option<Regions>>,
 }
 
 /// The regions of one gas.
@@ -149,9 +151,9 @@ fn middle(rows: &Range<usize>) -> f64 {
     0.5 * (rows.start + rows.end) as f64
 }
 
-/// The figures now; NaN without grains.
-fn figures<V: Vector>(gas: &Gas<V>) -> Vec<f64> {
-    let Some(regions) = Regions::of(gas) else { return vec![f64::NAN; QUANTILES.len() + 1] };
+/// The figures of `regions`; NaN without grains.
+fn figures(regions: Option<&Regions>) -> Vec<f64> {
+    let Some(regions) = regions else { return vec![f64::NAN; QUANTILES.len() + 1] };
     let quantiles = QUANTILES.iter().map(|(share, _)| regions.quantile(*share));
     quantiles.chain([regions.variance()]).collect()
 }
@@ -164,7 +166,14 @@ fn names() -> impl Iterator<Item = &'static str> {
 impl DensityDistribution {
     /// The measure; every setting has it.
     pub fn new() -> Self {
-        DensityDistribution { samples: Samples::new(QUANTILES.len() + 1) }
+        DensityDistribution { samples: Samples::new(QUANTILES.len() + 1), last: LastLook::default() }
+    }
+}
+
+impl DensityDistribution {
+    /// The regions of the gas of `snapshot`.
+    fn look<V: Vector>(&mut self, snapshot: &Snapshot<'_, V>) -> Option<&Regions> {
+        self.last.of(snapshot, || Regions::of(snapshot.gas)).as_ref()
     }
 }
 
@@ -184,7 +193,8 @@ impl<V: Vector> Measure<V> for DensityDistribution {
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {
-        self.samples.push(snapshot.gas.time(), &figures(snapshot.gas));
+        let row = figures(self.look(snapshot));
+        self.samples.push(snapshot.gas.time(), &row);
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -192,11 +202,11 @@ impl<V: Vector> Measure<V> for DensityDistribution {
     }
 
     fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
-        figures(snapshot.gas)
+        figures(self.look(snapshot))
     }
 
     fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
-        let Some(regions) = Regions::of(snapshot.gas) else { return Vec::new() };
+        let Some(regions) = self.look(snapshot) else { return Vec::new() };
         let columns = ["volume_fraction", "probability_density", "standard_error"];
         vec![Profile {
             name: "density-distribution".to_owned(),
@@ -207,7 +217,7 @@ impl<V: Vector> Measure<V> for DensityDistribution {
     }
 
     fn conclusion(&self, snapshot: &Snapshot<'_, V>, from: f64) -> (Vec<Profile>, Vec<Figure>) {
-        let samples = self.samples.with(snapshot.gas.time(), &figures(snapshot.gas));
+        let samples = self.samples.with(snapshot.gas.time(), &figures(Regions::of(snapshot.gas).as_ref()));
         let rows = samples.since(from);
         let mean = |(k, name)| figure(name, steady_mean(&rows, |row| row[1 + k]));
         (Vec::new(), names().enumerate().map(mean).collect())

@@ -65,7 +65,7 @@ fn variance<V: Vector>(size: V, grains: usize, species: &[Grain]) -> (f64, f64) 
             let kinds = species.len().max(1);
             gas.parts_mut().2.species =
                 (!species.is_empty()).then(|| (0..grains).map(|row| (row % kinds) as u8).collect());
-            figures(&gas)[QUANTILES.len()]
+            figures(Regions::of(&gas).as_ref())[QUANTILES.len()]
         })
         .collect();
     let found = average(&replicas).unwrap();
@@ -86,7 +86,7 @@ fn independent_grains_have_the_variance_of_poisson() {
     let positions: Vec<DVec2> = random_positions(5, 1000, DVec2::new(30.0, 20.0));
     let pairs: Vec<DVec2> = positions.iter().flat_map(|&p| [p, p]).collect();
     let gas = setting_of(DVec2::new(30.0, 20.0), [2, 2, 1]).gas(0.0, pairs, vec![DVec2::ZERO; 2000]);
-    assert!(figures(&gas)[QUANTILES.len()] > 1.3);
+    assert!(figures(Regions::of(&gas).as_ref())[QUANTILES.len()] > 1.3);
 }
 
 #[test]

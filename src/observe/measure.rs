@@ -13,6 +13,31 @@ pub struct Snapshot<'a, V: Vector> {
     pub totals: &'a Totals<V>,
 }
 
+/// Which of the states of a run one is: two that agree in this are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Simulated time [time].
+    pub time: f64,
+    /// Steps so far.
+    pub steps: u64,
+    /// Events so far.
+    pub events: u64,
+    /// Grains.
+    pub grains: usize,
+}
+
+impl<V: Vector> Snapshot<'_, V> {
+    /// Which of the states of its run it shows.
+    pub fn place(&self) -> Place {
+        Place {
+            time: self.gas.time(),
+            steps: self.totals.steps,
+            events: self.totals.events.all,
+            grains: self.gas.len(),
+        }
+    }
+}
+
 /// When a measure wants to be shown the gas, beside recordings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cadence {

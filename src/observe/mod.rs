@@ -8,6 +8,7 @@ pub mod density_contrast;
 pub mod density_distribution;
 pub mod density_profile;
 pub mod energy;
+pub mod field;
 pub mod flow;
 pub mod heap;
 pub mod impact_parameter;
@@ -24,6 +25,7 @@ pub mod velocity_profile;
 pub mod wall_stress;
 
 mod density_waves;
+mod last_look;
 pub(crate) mod layout;
 mod packing;
 mod samples;

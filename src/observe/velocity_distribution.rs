@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::last_look::LastLook;
 use super::layout;
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::moments::{kinetic_energy, mean_velocity, temperature};
@@ -39,6 +40,7 @@ pub struct VelocityDistribution {
     axis: usize,
     /// `[sample][figures, probability density of each bin]`.
     samples: Samples,
+    last: LastLook<Vec<f64>>,
 }
 
 /// Sums over grains of scaled velocities.
@@ -146,7 +148,12 @@ impl VelocityDistribution {
     /// The measure for `setting`; every one has it.
     pub fn new<V: Vector>(setting: &Setting<V>) -> Self {
         let samples = Samples::new(NAMES.len() + BINS);
-        VelocityDistribution { axis: layout::profile_axis(setting), samples }
+        VelocityDistribution { axis: layout::profile_axis(setting), samples, last: LastLook::default() }
+    }
+
+    /// What the gas of `snapshot` shows.
+    fn look<V: Vector>(&mut self, snapshot: &Snapshot<'_, V>) -> &[f64] {
+        self.last.of(snapshot, || look(snapshot.gas, self.axis))
     }
 }
 
@@ -160,7 +167,8 @@ impl<V: Vector> Measure<V> for VelocityDistribution {
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {
-        self.samples.push(snapshot.gas.time(), &look(snapshot.gas, self.axis));
+        let row = self.last.of(snapshot, || look(snapshot.gas, self.axis));
+        self.samples.push(snapshot.gas.time(), row);
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -168,13 +176,13 @@ impl<V: Vector> Measure<V> for VelocityDistribution {
     }
 
     fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
-        look(snapshot.gas, self.axis)[..NAMES.len()].to_vec()
+        self.look(snapshot)[..NAMES.len()].to_vec()
     }
 
     /// The density of this moment; errors are those of independent components.
     fn profiles(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
         let gas = snapshot.gas;
-        let density = look(gas, self.axis)[NAMES.len()..].to_vec();
+        let density = self.look(snapshot)[NAMES.len()..].to_vec();
         let components = (gas.len() * V::DIMENSION) as f64;
         let error = |p: &f64| (p * (1.0 - p * WIDTH) / (components * WIDTH)).sqrt();
         let errors = density.iter().map(error).collect();

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::law::boundary::{Boundary, Face};
+use crate::observe::field::Field;
 use crate::observe::measure::{Column, Profile};
 use crate::space::Vector;
 
@@ -21,8 +22,10 @@ pub struct RunLog {
     pub state_hashes: Vec<String>,
     /// All profiles, in the order they were written.
     pub profiles: Vec<Profile>,
-    /// Pictures of the grains, one per recording.
+    /// Pictures of the grains, in the order of their times.
     pub frames: Vec<Frame>,
+    /// Fields, in the order of their times.
+    pub fields: Vec<Field>,
     /// The box and its walls.
     pub walls: Option<Walls>,
     /// What is missing, as a sentence, where the file was cut off; nothing for a whole log.

@@ -91,11 +91,11 @@ impl Copy<'_> {
                 let data = message.encode();
                 self.copied.series.push(message.values);
                 self.copied.last_hash = message.state_hash;
-                return self.new.copy(topic, sequence, tick, &data).map_err(Fault::Other);
+                return self.new.copy(topic, sequence, tick, data).map_err(Fault::Other);
             }
             topic::PROFILES => self.copied.profiles.push(profile(data)?),
             _ => {}
         }
-        self.new.copy(topic, sequence, tick, data).map_err(Fault::Other)
+        self.new.copy(topic, sequence, tick, data.to_vec()).map_err(Fault::Other)
     }
 }

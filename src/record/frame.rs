@@ -108,7 +108,13 @@ pub(crate) fn frame_of(cloud: &PointCloud) -> Option<Frame> {
     if !cloud.data.len().is_multiple_of(stride) {
         return None;
     }
-    let mut frame = Frame::default();
+    let points = cloud.data.len() / stride;
+    let mut frame = Frame {
+        positions: Vec::with_capacity(points),
+        velocities: Vec::with_capacity(points),
+        ids: Vec::with_capacity(points),
+        ..Frame::default()
+    };
     for point in cloud.data.chunks_exact(stride) {
         let word = |offset: usize| -> [u8; 4] { [0, 1, 2, 3].map(|byte| point[offset + byte]) };
         let component = |field: usize| f32::from_le_bytes(word(floats[field]));

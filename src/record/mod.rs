@@ -1,15 +1,18 @@
 //! The record of a run: what a log holds, how it is written and read.
 //!
 //! A log is an MCAP file that viewers open as it is. Topics: `/measures` (the series, a field per
-//! column), `/particles` (`foxglove.PointCloud`), `/profiles`, `/walls` (`foxglove.SceneUpdate`)
-//! and `/state` (saved states). Metadata `grainflow` and the attachment `scenario.toml` stand
-//! before the first message. Message n of `/particles` belongs to message n of `/measures`.
+//! column), `/particles` (`foxglove.PointCloud`), `/fields/…` (`foxglove.Grid`, in space
+//! `foxglove.VoxelGrid`), `/profiles`, `/walls` (`foxglove.SceneUpdate`) and `/state` (saved states). Metadata `grainflow` and the attachment `scenario.toml` stand
+//! before the first message. A message of `/particles` or `/fields/…` belongs to the message of `/measures` with its
+//! sequence number, where its exact time stands.
 
+mod background;
 pub(crate) mod checkpoints;
 pub mod contents;
 pub(crate) mod continuation;
 pub mod error;
 pub mod frame;
+mod grids;
 pub mod history;
 pub mod index;
 pub mod overview;

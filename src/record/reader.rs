@@ -9,6 +9,7 @@ use prost::Message;
 use super::contents::RunLog;
 use super::error::LogError;
 use super::frame::frame_of;
+use super::grids;
 use super::saved::Assembly;
 use super::scan::{Event, Fault, scan};
 use super::schema::foxglove::{PointCloud, SceneUpdate};
@@ -99,6 +100,8 @@ struct Contents {
     log: RunLog,
     /// Numbers of the fields of the columns.
     numbers: Vec<u32>,
+    /// Topic of each channel of fields, whether it is of space, and its units.
+    grids: Vec<(String, bool, BTreeMap<String, String>)>,
     /// Place in the sequence and grains in the gas of every recording.
     recordings: Vec<(u32, u64)>,
     /// Whether pictures are passed over.
@@ -115,10 +118,14 @@ impl Contents {
                     .ok_or_else(|| Fault::damage("the columns of the series have no proper units"))?;
                 (self.numbers, self.log.columns) = columns.into_iter().unzip();
             }
+            Event::Channel { topic, description, metadata } if topic.starts_with(topic::FIELDS) => {
+                self.grids.push((topic.to_owned(), grids::is_of_space(description), metadata.clone()));
+            }
             Event::Message { topic, sequence, data, .. } => match topic {
                 topic::MEASURES => self.measures(sequence, data)?,
                 topic::PARTICLES if self.without_frames => {}
                 topic::PARTICLES => self.frame(sequence, data)?,
+                _ if topic.starts_with(topic::FIELDS) => self.field(topic, sequence, data)?,
                 topic::PROFILES => self.log.profiles.push(profile(data)?),
                 topic::WALLS => {
                     self.log.walls = walls_of(&SceneUpdate::decode(data).map_err(Fault::damage)?);
@@ -150,6 +157,21 @@ impl Contents {
         frame.time = self.log.series[recording][0];
         frame.grains = self.recordings[recording].1;
         self.log.frames.push(frame);
+        Ok(())
+    }
+
+    /// A field belongs to its recording as a frame does.
+    fn field(&mut self, topic: &str, sequence: u32, data: &[u8]) -> Result<(), Fault> {
+        let Ok(recording) = self.recordings.binary_search_by_key(&sequence, |&(place, _)| place) else {
+            return Ok(());
+        };
+        let found = self.grids.iter().find(|(known, ..)| known == topic);
+        let mut field = found
+            .and_then(|(_, of_space, units)| grids::decode(data, *of_space, units))
+            .ok_or_else(|| Fault::damage("a field lacks a unit or part of a cell"))?;
+        field.name = topic[topic::FIELDS.len()..].to_owned();
+        field.time = self.log.series[recording][0];
+        self.log.fields.push(field);
         Ok(())
     }
 }

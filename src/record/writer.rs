@@ -2,16 +2,18 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::BufWriter;
+use std::path::Path;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, WriteOptions};
 use prost::Message;
 
+use super::background::{Background, Encoded, FileWriter};
 use super::contents::{EarlierPart, Frame, Walls};
 use super::error::LogError;
 use super::frame::point_cloud;
+use super::grids;
 use super::saved;
 use super::schema::descriptor::descriptor_set;
 use super::schema::measures::{self, MeasuresMessage};
@@ -20,6 +22,7 @@ use super::schema::{self, Described, foxglove, grainflow, topic};
 use super::state::SavedState;
 use super::time_scale::tick;
 use super::walls::scene;
+use crate::observe::field::{Field, Quantity};
 use crate::observe::measure::{Column, Profile};
 use crate::space::Vector;
 
@@ -36,6 +39,8 @@ pub struct LogHeader {
     pub columns: Vec<Column>,
     /// The box and its walls.
     pub walls: Option<Walls>,
+    /// Fields that will be recorded, and the dimension of their space.
+    pub fields: (Vec<Quantity>, usize),
     /// When the log begins [time].
     pub start: f64,
     /// Ticks per unit of time, from [`super::time_scale::time_scale`].
@@ -49,22 +54,31 @@ pub struct Recording<'a> {
     pub values: &'a [f64],
     /// The state hash in hexadecimal digits.
     pub state_hash: &'a str,
+    /// Grains in the gas.
+    pub grains: u64,
     /// Profiles of this moment.
     pub profiles: &'a [Profile],
-    /// The picture of this moment.
-    pub frame: &'a Frame,
+    /// The picture of this moment, if there is one.
+    pub frame: Option<&'a Frame>,
+    /// Fields of this moment, of those that the header names.
+    pub fields: &'a [Field],
 }
 
-/// A log that is being written. Without [`LogWriter::finish`] it has no end.
+/// A log that is being written, by a thread of its own. Without [`LogWriter::finish`] it has no end.
+///
+/// What is given is encoded at once, and compressed and written while the run goes on. Where something cannot be
+/// written, this or the next call says so, whichever it is.
+#[derive(Debug)]
 pub struct LogWriter {
-    path: PathBuf,
-    writer: mcap::Writer<BufWriter<File>>,
+    file: Background,
     time_scale: u64,
     columns: usize,
     measures: Channel,
     particles: Channel,
     profiles: Channel,
     states: Channel,
+    /// By the name of the field.
+    fields: Vec<(&'static str, Channel)>,
 }
 
 /// A channel and where it stands.
@@ -75,12 +89,6 @@ struct Channel {
     last_tick: u64,
 }
 
-impl std::fmt::Debug for LogWriter {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("LogWriter").field("path", &self.path).finish_non_exhaustive()
-    }
-}
-
 impl LogWriter {
     /// Begins the log at `path`, in place of what may stand there.
     pub fn create(path: &Path, header: &LogHeader) -> Result<Self, LogError> {
@@ -88,118 +96,112 @@ impl LogWriter {
             return Err(LogError::Columns { path: path.to_owned(), fault });
         }
         let file = File::create(path).map_err(|source| LogError::Create { path: path.to_owned(), source })?;
-        Self::begin(path, BufWriter::new(file), header).map_err(|source| LogError::write(path, source))
-    }
-
-    fn begin(path: &Path, file: BufWriter<File>, header: &LogHeader) -> mcap::McapResult<Self> {
-        let mut writer = options().create(file)?;
-        writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
-        for part in &header.earlier {
-            writer.write_metadata(&resumption(part))?;
-        }
-        let start = tick(header.start, header.time_scale);
-        writer.attach(&scenario(start, schema::SCENARIO.to_owned(), &header.scenario))?;
-        for (k, part) in header.earlier.iter().enumerate() {
-            let name = format!("{}{}.toml", schema::EARLIER_SCENARIO, k + 1);
-            writer.attach(&scenario(start, name, &part.scenario))?;
-        }
-        let mut log = LogWriter {
-            path: path.to_owned(),
+        let failed = |source| LogError::write(path, source);
+        let mut writer = options().create(BufWriter::new(file)).map_err(failed)?;
+        let ([measures, particles, profiles, states], fields) = begin(&mut writer, header).map_err(failed)?;
+        Ok(LogWriter {
+            file: Background::start(path, writer)?,
             time_scale: header.time_scale,
             columns: header.columns.len(),
-            measures: measures_channel(&mut writer, &header.columns)?,
-            particles: channel::<foxglove::PointCloud>(&mut writer, topic::PARTICLES)?,
-            profiles: channel::<grainflow::Profile>(&mut writer, topic::PROFILES)?,
-            states: channel::<grainflow::State>(&mut writer, topic::STATE)?,
-            writer,
-        };
-        if let Some(walls) = &header.walls {
-            let mut channel = channel::<foxglove::SceneUpdate>(&mut log.writer, topic::WALLS)?;
-            channel.write(&mut log.writer, start, &scene(walls, start).encode_to_vec())?;
-        }
-        log.writer.flush()?;
-        Ok(log)
+            measures,
+            particles,
+            profiles,
+            states,
+            fields,
+        })
     }
 
     /// Where the log is written.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.file.path()
     }
 
-    /// Writes one recording and flushes it.
+    /// Gives one recording to be written and flushed.
     pub fn recording(&mut self, recording: &Recording<'_>) -> Result<(), LogError> {
         assert_eq!(recording.values.len(), self.columns, "a value for every column");
-        self.checked(|log| {
-            let message = MeasuresMessage {
-                values: recording.values.to_vec(),
-                state_hash: recording.state_hash.to_owned(),
-                grains: recording.frame.grains,
-            };
-            let tick = tick(recording.values[0], log.time_scale);
-            log.measures.write(&mut log.writer, tick, &message.encode())?;
-            for profile in recording.profiles {
-                log.write_profile(profile)?;
-            }
-            // After the measures: a frame that is there has its time there, too.
-            let cloud = point_cloud(recording.frame, tick);
-            log.particles.write(&mut log.writer, tick, &cloud.encode_to_vec())?;
-            log.writer.flush()
-        })
+        let message = MeasuresMessage {
+            values: recording.values.to_vec(),
+            state_hash: recording.state_hash.to_owned(),
+            grains: recording.grains,
+        };
+        let tick = tick(recording.values[0], self.time_scale);
+        let sequence = self.measures.sequence;
+        let mut messages = vec![self.measures.message(tick, message.encode())];
+        messages.extend(recording.profiles.iter().map(|profile| self.profile_message(profile)));
+        // After the measures: a frame that is there has its time there, too.
+        let cloud = recording.frame.map(|frame| point_cloud(frame, tick).encode_to_vec());
+        messages.extend(cloud.map(|cloud| self.particles.message_of(sequence, tick, cloud)));
+        for field in recording.fields {
+            let known = self.fields.iter_mut().find(|(name, _)| *name == field.name);
+            let (_, channel) = known.expect("the header names every field that is recorded");
+            messages.push(channel.message_of(sequence, tick, grids::encode(field, tick)));
+        }
+        self.file.write(messages, true)
     }
 
-    /// Writes a profile of the whole run.
+    /// Gives a profile of the whole run to be written.
     pub fn profile(&mut self, profile: &Profile) -> Result<(), LogError> {
-        self.checked(|log| log.write_profile(profile))
+        let message = self.profile_message(profile);
+        self.file.write(vec![message], false)
     }
 
-    /// Writes a saved state and flushes it.
+    /// Gives a saved state to be written and flushed.
     pub fn state<V: Vector>(&mut self, state: &SavedState<'_, V>) -> Result<(), LogError> {
-        self.checked(|log| {
-            let tick = tick(state.time, log.time_scale);
-            for rows in saved::parts(state) {
-                log.states.write(&mut log.writer, tick, &saved::part(state, rows).encode_to_vec())?;
-            }
-            log.writer.flush()
-        })
+        let tick = tick(state.time, self.time_scale);
+        // Part by part: only a few of a large state wait in memory.
+        let mut parts = saved::parts(state).peekable();
+        while let Some(rows) = parts.next() {
+            let part = self.states.message(tick, saved::part(state, rows).encode_to_vec());
+            self.file.write(vec![part], parts.peek().is_none())?;
+        }
+        Ok(())
     }
 
-    /// Writes a message of an older log as it stands there, at its `tick`.
+    /// Gives a message of an older log to be written as it stands there, at its `tick`. A field that this log does not have
+    /// is left out.
     pub(crate) fn copy(
         &mut self,
         topic: &str,
         sequence: u32,
         tick: u64,
-        data: &[u8],
+        data: Vec<u8>,
     ) -> Result<(), LogError> {
         let channel = match topic {
             topic::MEASURES => &mut self.measures,
             topic::PARTICLES => &mut self.particles,
             topic::PROFILES => &mut self.profiles,
             topic::STATE => &mut self.states,
-            _ => return Err(LogError::UnknownTopic { path: self.path.clone(), topic: topic.to_owned() }),
+            _ => match topic.strip_prefix(topic::FIELDS) {
+                Some(field) => match self.fields.iter_mut().find(|(name, _)| *name == field) {
+                    Some((_, channel)) => channel,
+                    None => return Ok(()),
+                },
+                None => {
+                    let path = self.path().to_owned();
+                    return Err(LogError::UnknownTopic { path, topic: topic.to_owned() });
+                }
+            },
         };
-        channel.sequence = sequence;
-        channel.write(&mut self.writer, tick, data).map_err(|source| LogError::write(&self.path, source))
+        let message = channel.message_of(sequence, tick, data);
+        self.file.write(vec![message], false)
     }
 
-    /// Hands everything written so far to the system.
+    /// Waits until everything given so far is handed to the system.
     pub fn flush(&mut self) -> Result<(), LogError> {
-        self.checked(|log| log.writer.flush())
+        self.file.flush()
+    }
+
+    /// Whether everything that was tried so far could be written; waits for nothing.
+    pub fn check(&mut self) -> Result<(), LogError> {
+        self.file.check()
     }
 
     /// Ends the log: statistics and index, and everything on the disk.
-    pub fn finish(mut self) -> Result<(), LogError> {
-        self.checked(|log| log.writer.finish().map(drop))?;
-        let LogWriter { path, writer, .. } = self;
-        let mut file = writer.into_inner();
-        file.flush().and_then(|()| file.get_ref().sync_all()).map_err(|source| LogError::write(&path, source))
+    pub fn finish(self) -> Result<(), LogError> {
+        self.file.finish()
     }
 
-    fn checked(&mut self, write: impl FnOnce(&mut Self) -> mcap::McapResult<()>) -> Result<(), LogError> {
-        write(self).map_err(|source| LogError::write(&self.path, source))
-    }
-
-    fn write_profile(&mut self, profile: &Profile) -> mcap::McapResult<()> {
+    fn profile_message(&mut self, profile: &Profile) -> Encoded {
         let column = |(column, values): (&Column, &Vec<f64>)| grainflow::ProfileColumn {
             name: column.name.clone(),
             unit: unit_text(column.unit),
@@ -210,31 +212,64 @@ impl LogWriter {
             name: profile.name.clone(),
             columns: profile.columns.iter().zip(&profile.values).map(column).collect(),
         };
-        let tick = tick(profile.time, self.time_scale);
-        self.profiles.write(&mut self.writer, tick, &message.encode_to_vec())
+        self.profiles.message(tick(profile.time, self.time_scale), message.encode_to_vec())
     }
 }
 
 impl Channel {
-    /// Writes a message; its tick is never before that of an earlier one.
-    fn write(
-        &mut self,
-        writer: &mut mcap::Writer<BufWriter<File>>,
-        tick: u64,
-        data: &[u8],
-    ) -> mcap::McapResult<()> {
-        let tick = tick.max(self.last_tick);
+    /// The next message; its tick is never before that of an earlier one.
+    fn message(&mut self, tick: u64, data: Vec<u8>) -> Encoded {
+        self.last_tick = tick.max(self.last_tick);
         let header = MessageHeader {
             channel_id: self.id,
             sequence: self.sequence,
-            log_time: tick,
-            publish_time: tick,
+            log_time: self.last_tick,
+            publish_time: self.last_tick,
         };
-        writer.write_to_known_channel(&header, data)?;
         self.sequence += 1;
-        self.last_tick = tick;
-        Ok(())
+        Encoded { header, data }
     }
+
+    /// A message that belongs to the recording `sequence`, where that was not the last one's.
+    fn message_of(&mut self, sequence: u32, tick: u64, data: Vec<u8>) -> Encoded {
+        self.sequence = sequence;
+        self.message(tick, data)
+    }
+}
+
+/// The channels of measures, particles, profiles and states, and those of fields by name.
+type Channels = ([Channel; 4], Vec<(&'static str, Channel)>);
+
+/// Writes everything that is known before the first step, and flushes it.
+fn begin(writer: &mut FileWriter, header: &LogHeader) -> mcap::McapResult<Channels> {
+    writer.write_metadata(&Metadata { name: schema::METADATA.to_owned(), metadata: metadata(header) })?;
+    for part in &header.earlier {
+        writer.write_metadata(&resumption(part))?;
+    }
+    let start = tick(header.start, header.time_scale);
+    writer.attach(&scenario(start, schema::SCENARIO.to_owned(), &header.scenario))?;
+    for (k, part) in header.earlier.iter().enumerate() {
+        let name = format!("{}{}.toml", schema::EARLIER_SCENARIO, k + 1);
+        writer.attach(&scenario(start, name, &part.scenario))?;
+    }
+    let channels = [
+        measures_channel(writer, &header.columns)?,
+        channel::<foxglove::PointCloud>(writer, topic::PARTICLES)?,
+        channel::<grainflow::Profile>(writer, topic::PROFILES)?,
+        channel::<grainflow::State>(writer, topic::STATE)?,
+    ];
+    if let Some(walls) = &header.walls {
+        let mut channel = channel::<foxglove::SceneUpdate>(writer, topic::WALLS)?;
+        let Encoded { header, data } = channel.message(start, scene(walls, start).encode_to_vec());
+        writer.write_to_known_channel(&header, &data)?;
+    }
+    let (quantities, dimension) = &header.fields;
+    let mut fields = Vec::new();
+    for &quantity in quantities {
+        fields.push((quantity.name(), field_channel(writer, quantity, *dimension)?));
+    }
+    writer.flush()?;
+    Ok((channels, fields))
 }
 
 /// The same bytes on every machine: one compression thread, no seeking back; a chunk that is not
@@ -273,19 +308,30 @@ fn scenario(time: u64, name: String, text: &str) -> mcap::Attachment<'_> {
     mcap::Attachment { log_time: time, create_time: time, name, media_type, data: text.as_bytes().into() }
 }
 
-fn channel<M: Described>(
-    writer: &mut mcap::Writer<BufWriter<File>>,
+fn channel<M: Described>(writer: &mut FileWriter, topic: &str) -> mcap::McapResult<Channel> {
+    channel_with::<M>(writer, topic, &BTreeMap::new())
+}
+
+fn channel_with<M: Described>(
+    writer: &mut FileWriter,
     topic: &str,
+    metadata: &BTreeMap<String, String>,
 ) -> mcap::McapResult<Channel> {
     let schema = writer.add_schema(&M::TABLE.full_name(), "protobuf", &descriptor_set(&M::TABLE))?;
-    let id = writer.add_channel(schema, topic, "protobuf", &BTreeMap::new())?;
+    let id = writer.add_channel(schema, topic, "protobuf", metadata)?;
     Ok(Channel { id, sequence: 0, last_tick: 0 })
 }
 
-fn measures_channel(
-    writer: &mut mcap::Writer<BufWriter<File>>,
-    columns: &[Column],
-) -> mcap::McapResult<Channel> {
+fn field_channel(writer: &mut FileWriter, quantity: Quantity, dimension: usize) -> mcap::McapResult<Channel> {
+    let topic = format!("{}{}", topic::FIELDS, quantity.name());
+    let units = grids::units(&quantity.components(dimension));
+    match dimension {
+        3 => channel_with::<foxglove::VoxelGrid>(writer, &topic, &units),
+        _ => channel_with::<foxglove::Grid>(writer, &topic, &units),
+    }
+}
+
+fn measures_channel(writer: &mut FileWriter, columns: &[Column]) -> mcap::McapResult<Channel> {
     let schema = writer.add_schema(measures::NAME, "protobuf", &measures::descriptor_set(columns))?;
     let id = writer.add_channel(schema, topic::MEASURES, "protobuf", &measures::units(columns))?;
     Ok(Channel { id, sequence: 0, last_tick: 0 })

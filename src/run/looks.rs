@@ -1,6 +1,6 @@
 //! What is looked at when a run is recorded.
 
-use crate::observe::measure::{Column, Dimension, Profile};
+use crate::observe::measure::{Column, Dimension, Measure, Profile, Snapshot};
 use crate::simulation::Simulation;
 use crate::space::Vector;
 
@@ -28,14 +28,20 @@ impl Looks {
         Looks { stored, columns }
     }
 
-    /// Values of the columns, and profiles of this moment. Measures of what happens between two looks begin anew.
-    pub(super) fn take<V: Vector>(&self, simulation: &mut Simulation<'_, V>) -> (Vec<f64>, Vec<Profile>) {
-        let (measures, snapshot) = simulation.observation();
-        let mut values = vec![snapshot.gas.time()];
-        let mut profiles = Vec::new();
+    /// Values of the columns, and profiles of this moment where they are wanted. Measures of what happens between two
+    /// looks begin anew.
+    pub(super) fn take<V: Vector>(
+        &self,
+        measures: &mut [Box<dyn Measure<V>>],
+        snapshot: &Snapshot<'_, V>,
+        with_profiles: bool,
+    ) -> (Vec<f64>, Vec<Profile>) {
+        let (mut values, mut profiles) = (vec![snapshot.gas.time()], Vec::new());
         for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
-            values.extend(measure.values(&snapshot));
-            profiles.extend(measure.profiles(&snapshot));
+            values.extend(measure.values(snapshot));
+            if with_profiles {
+                profiles.extend(measure.profiles(snapshot));
+            }
         }
         (values, profiles)
     }

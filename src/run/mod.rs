@@ -7,6 +7,7 @@ mod recorder;
 mod rerun;
 pub mod resume;
 pub(crate) mod series;
+mod shown;
 mod state_difference;
 mod summary;
 mod timetable;

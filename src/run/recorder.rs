@@ -5,10 +5,12 @@ use std::path::Path;
 
 use super::NUMERICS;
 use super::looks::Looks;
+use super::shown::Shown;
 use super::timetable::Timetable;
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
-use crate::observe::measure::{Column, Figure, Profile};
+use crate::observe::field::{Field, field};
+use crate::observe::measure::{Column, Figure, Place, Profile};
 use crate::record::RECOVERED_KEY;
 use crate::record::contents::{EarlierPart, Walls};
 use crate::record::continuation::copy_before;
@@ -26,8 +28,8 @@ pub(super) struct Recorder {
     writer: LogWriter,
     timetable: Timetable,
     looks: Looks,
-    /// Time, steps and events at the last recording.
-    last_recorded: Option<(f64, u64, u64)>,
+    /// Which state was recorded last.
+    last_recorded: Option<Place>,
     recorded: Recorded,
 }
 
@@ -92,7 +94,7 @@ impl Recorder {
             profiles: copied.profiles,
             figures: Vec::new(),
         };
-        let last_recorded = is_here.then(|| place(simulation));
+        let last_recorded = is_here.then(|| simulation.observation().1.place());
         let mut recorder = Recorder { writer, timetable, looks, last_recorded, recorded };
         if origin.keeps_state {
             recorder.save(simulation)?;
@@ -105,14 +107,21 @@ impl Recorder {
         self.timetable.horizon(simulation)
     }
 
-    /// Makes the recording and saves the state that are due, if any.
+    /// Makes the recording and saves the state that are due, if any. Also tells of what could not be written since the
+    /// last step.
     pub(super) fn record_if_due<V: Vector>(
         &mut self,
         simulation: &mut Simulation<'_, V>,
     ) -> Result<(), LogError> {
+        self.writer.check()?;
         if self.timetable.wants_recording(simulation) {
-            self.record(simulation)?;
-            self.timetable.recorded(simulation);
+            let shown = Shown::at(self.timetable.due(simulation), &simulation.scenario().record);
+            // The last recording shows everything. Where the timetable does not want that, it comes after the last
+            // state: a run that goes on from there makes the one that is due.
+            if shown == Shown::ALL || simulation.end_reason().is_none() {
+                self.record(simulation, shown)?;
+                self.timetable.recorded(simulation);
+            }
         }
         if self.timetable.wants_state(simulation) {
             self.save(simulation)?;
@@ -128,8 +137,8 @@ impl Recorder {
         simulation: &mut Simulation<'_, V>,
     ) -> Result<Recorded, LogError> {
         self.save(simulation)?;
-        if self.last_recorded != Some(place(simulation)) {
-            self.record(simulation)?;
+        if self.last_recorded != Some(simulation.observation().1.place()) {
+            self.record(simulation, Shown::ALL)?;
         }
         let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
         let (measures, snapshot) = simulation.observation();
@@ -150,19 +159,39 @@ impl Recorder {
         self.writer.finish()
     }
 
-    fn record<V: Vector>(&mut self, simulation: &mut Simulation<'_, V>) -> Result<(), LogError> {
-        let most_points = simulation.scenario().record.points.map(|points| points as usize);
-        let (values, profiles) = self.looks.take(simulation);
-        let gas = simulation.gas();
+    fn record<V: Vector>(
+        &mut self,
+        simulation: &mut Simulation<'_, V>,
+        shown: Shown,
+    ) -> Result<(), LogError> {
+        let scenario = simulation.scenario();
+        let most_points = scenario.record.points.map(|points| points as usize);
+        let quantities = scenario.fields().filter(|_| shown.fields);
+        let fields: Vec<Field> =
+            quantities.map(|one| field(one, simulation.gas(), simulation.cell_counts())).collect();
+        let (measures, snapshot) = simulation.observation();
+        let looks = &self.looks;
+        let (hash, ((values, profiles), frame)) = rayon::join(
+            || state_hash(snapshot.gas),
+            || {
+                let picture = || frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+                (looks.take(measures, &snapshot, shown.profiles), shown.frame.then(picture))
+            },
+        );
         self.writer.recording(&Recording {
             values: &values,
-            state_hash: &state_hash(gas),
+            state_hash: &hash,
+            grains: snapshot.gas.len() as u64,
             profiles: &profiles,
-            frame: &frame(gas.time(), gas.columns(), most_points),
+            frame: frame.as_ref(),
+            fields: &fields,
         })?;
         self.recorded.series.push(values);
         self.recorded.profiles.extend(profiles);
-        self.last_recorded = Some(place(simulation));
+        self.last_recorded = Some(snapshot.place());
+        if shown.fields {
+            simulation.restart_cell_counts();
+        }
         Ok(())
     }
 
@@ -193,15 +222,10 @@ fn header<V: Vector>(scenario: &Scenario<V>, looks: &Looks) -> LogHeader {
         earlier: Vec::new(),
         columns: looks.columns.clone(),
         walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
+        fields: (scenario.fields().collect(), V::DIMENSION),
         start: 0.0,
         time_scale: expected_time_scale(scenario),
     }
-}
-
-/// Time, steps and events: two states of a run that agree in them are the same.
-fn place<V: Vector>(simulation: &Simulation<'_, V>) -> (f64, u64, u64) {
-    let totals = simulation.totals();
-    (simulation.gas().time(), totals.steps, totals.events.all)
 }
 
 /// Ticks per time from what the scenario says of its length and of the pauses between recordings.

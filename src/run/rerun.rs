@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::looks::Looks;
 use super::resume::go_on_with;
+use super::shown::Shown;
 use super::timetable::Timetable;
 use super::{Listener, RunError, initial_gas, status};
 use crate::engine::{Horizon, NoLaps};
@@ -147,9 +148,15 @@ impl<'s, V: Vector> Rerun<'s, V> {
     /// Takes the recording that is due: names of the columns, and their values.
     pub(super) fn recording(&mut self) -> (Vec<String>, Vec<f64>) {
         let Running { simulation, timetable, looks } = self.now_mut();
-        let (values, _) = looks.take(simulation);
+        let mut shown = Shown::ALL;
         if timetable.wants_recording(simulation) {
+            shown = Shown::at(timetable.due(simulation), &simulation.scenario().record);
             timetable.recorded(simulation);
+        }
+        let (measures, snapshot) = simulation.observation();
+        let (values, _) = looks.take(measures, &snapshot, shown.profiles);
+        if shown.fields {
+            simulation.restart_cell_counts();
         }
         (looks.columns.iter().map(|column| column.name.clone()).collect(), values)
     }

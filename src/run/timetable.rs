@@ -1,5 +1,7 @@
 //! When a run is recorded and when its states are saved.
 
+use std::ops::Range;
+
 use crate::engine::Horizon;
 use crate::scenario::model::{RecordPlan, Spacing};
 use crate::simulation::Simulation;
@@ -49,10 +51,15 @@ impl Timetable {
         self.frames.is_due(self.recordings, simulation.gas().time(), simulation.progress())
     }
 
+    /// The numbers of the recordings that one made now stands for: several where a step was longer than the pause.
+    pub(super) fn due<V: Vector>(&self, simulation: &Simulation<'_, V>) -> Range<u64> {
+        let next = self.frames.next(simulation.gas().time(), simulation.progress());
+        self.recordings..next.max(self.recordings + 1)
+    }
+
     /// Notes that it was made.
     pub(super) fn recorded<V: Vector>(&mut self, simulation: &Simulation<'_, V>) {
-        let next = self.frames.next(simulation.gas().time(), simulation.progress());
-        self.recordings = next.max(self.recordings + 1);
+        self.recordings = self.due(simulation).end;
     }
 
     /// Whether a state is to be saved.

@@ -3,6 +3,7 @@
 use super::estimate::{self, Estimate};
 use super::model::{EngineKind, Scenario, Spacing};
 use crate::law::boundary::Face;
+use crate::observe::field::Quantity;
 use crate::space::Vector;
 
 /// Up to so many grains the columns stay in the caches of a processor.
@@ -103,14 +104,14 @@ fn grain_bytes<V: Vector>() -> f64 {
 }
 
 /// The most memory that a run holds [bytes]: grains twice over for sorting and again for the saved
-/// state, and cells; or, when it is over, all frames for its report.
+/// state, and cells; or, when it is over, all frames and fields for its report.
 pub(super) fn memory<V: Vector>(scenario: &Scenario<V>) -> f64 {
     let cells = scenario.grid().number_of_cells() as f64;
     let per_cell = if V::DIMENSION == 2 { 24.0 } else { 32.0 };
     let events = if scenario.engine.kind.is_event_driven() { EVENTS_OF_A_GRAIN } else { 0.0 };
     let per_grain = 4.0 * grain_bytes::<V>() + 30.0 + events;
     let running = PROGRAM + final_grains(scenario) * per_grain + cells * per_cell;
-    let reporting = REPORTING_PROGRAM + recordings(scenario).made * mean_points(scenario) * POINT;
+    let reporting = REPORTING_PROGRAM + pictures(scenario);
     running.max(reporting)
 }
 
@@ -118,6 +119,21 @@ pub(super) fn memory<V: Vector>(scenario: &Scenario<V>) -> f64 {
 fn mean_points<V: Vector>(scenario: &Scenario<V>) -> f64 {
     let grains = mean_grains(scenario);
     scenario.record.points.map_or(grains, |points| f64::from(points).min(grains))
+}
+
+/// Bytes of the fields of a recording that has them.
+fn field_bytes<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let values = |field: Quantity| field.components(V::DIMENSION).len();
+    let values = scenario.fields().map(values).sum::<usize>();
+    (values * size_of::<f32>() * scenario.grid().number_of_cells()) as f64
+}
+
+/// Bytes of all frames and fields of a run.
+fn pictures<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let made = recordings(scenario).made;
+    let of_every = |every: u32| (made / f64::from(every)).ceil();
+    of_every(scenario.record.frames_every) * POINT * mean_points(scenario)
+        + of_every(scenario.record.fields_every) * field_bytes(scenario)
 }
 
 /// Recordings of a run.
@@ -145,6 +161,7 @@ pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
     let spread = f64::from(scenario.record.states);
     let every = scenario.record.state_every;
     let states = every.zip(duration(scenario)).map_or(spread, |(every, duration)| duration / every) + 1.0;
-    recordings(scenario).made * (POINT * mean_points(scenario) + RECORD)
+    recordings(scenario).made * RECORD
+        + pictures(scenario)
         + states * final_grains(scenario) * grain_bytes::<V>()
 }

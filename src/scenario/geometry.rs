@@ -3,6 +3,7 @@
 use super::model::{AnyScenario, EngineKind, InitialPositions, RunLimits, Scenario};
 use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
+use crate::observe::field::Quantity;
 use crate::observe::setting::Setting;
 use crate::space::Vector;
 
@@ -25,6 +26,12 @@ impl<V: Vector> Scenario<V> {
             roughness: self.roughness,
             counts_impacts: self.engine.kind == EngineKind::EventDriven,
         }
+    }
+
+    /// Fields that are recorded: those that are named, where the engine has them.
+    pub fn fields(&self) -> impl Iterator<Item = Quantity> + '_ {
+        let draws_candidates = !self.engine.kind.is_event_driven();
+        self.record.fields.iter().copied().filter(move |field| draws_candidates || !field.is_of_candidates())
     }
 
     /// The true volume fraction at the start, N V_p over the volume of `domain.size`; V_p is the mean over

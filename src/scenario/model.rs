@@ -13,6 +13,7 @@ use crate::law::restitution::RestitutionLaw;
 use crate::law::roughness::Roughness;
 use crate::law::source::Source;
 use crate::matter::grain::Grain;
+use crate::observe::field::Quantity;
 
 /// A scenario in two or three dimensions.
 #[derive(Clone, Debug, PartialEq)]
@@ -185,6 +186,14 @@ pub struct RecordPlan {
     pub spacing: Spacing,
     /// Points of a frame: at most this many, `None` for all.
     pub points: Option<u32>,
+    /// Frames are made at every so manieth recording, and at the end.
+    pub frames_every: u32,
+    /// Profiles are stored at every so manieth recording, and at the end.
+    pub profiles_every: u32,
+    /// Fields that are recorded where the engine has them.
+    pub fields: Vec<Quantity>,
+    /// Fields are recorded at every so manieth recording, and at the end.
+    pub fields_every: u32,
     /// Names of the measures whose series and profiles are stored; `None` for all that apply and are cheap.
     pub measures: Option<Vec<String>>,
     /// Full-precision states during the run, beside the one at the end.

@@ -72,8 +72,25 @@ pub(super) const SOURCE: &[&str] = &["count", "rate", "position", "width", "heig
 /// `[run]`.
 pub(super) const RUN: &[&str] = &["time", "steps", "collisions_per_particle", "rest"];
 /// `[record]`.
-pub(super) const RECORD: &[&str] =
-    &["frames", "every", "spacing", "measures", "points", "states", "state_every", "from"];
+pub(super) const RECORD: &[&str] = &[
+    "frames",
+    "every",
+    "spacing",
+    "measures",
+    "points",
+    "states",
+    "state_every",
+    "from",
+    "particles",
+    "profiles",
+    "fields",
+];
+/// `record.particles`.
+pub(super) const RECORD_PARTICLES: &[&str] = &["every_nth", "points"];
+/// `record.profiles`.
+pub(super) const RECORD_PROFILES: &[&str] = &["every_nth"];
+/// `record.fields`, where it is a table.
+pub(super) const RECORD_FIELDS: &[&str] = &["names", "every_nth"];
 /// `[units]`.
 pub(super) const UNITS: &[&str] = &["length", "mass", "time"];
 
@@ -93,6 +110,8 @@ pub(super) const TABLES: &[(&str, &[&str])] = &[
     ("source", SOURCE),
     ("run", RUN),
     ("record", RECORD),
+    ("record.particles", RECORD_PARTICLES),
+    ("record.fields", RECORD_FIELDS),
 ];
 
 pub use crate::observe::NAMES as MEASURES;

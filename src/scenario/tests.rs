@@ -3,6 +3,7 @@ use glam::DVec2;
 use super::model::*;
 use super::*;
 use crate::law::boundary::{Face, WallKind};
+use crate::observe::field::Quantity;
 
 fn with(sets: &[&str]) -> Overrides {
     Overrides { sets: sets.iter().map(ToString::to_string).collect(), ..Default::default() }
@@ -99,6 +100,26 @@ fn three_dimensions_are_read() {
     assert_eq!(scenario.initial.velocities, InitialVelocities::Rest);
     assert_eq!(scenario.engine.hsmc.maximum_volume_fraction, 0.64);
     assert_eq!(scenario.record.spacing, Spacing::Frames(200));
+}
+
+#[test]
+fn each_kind_of_record_has_its_pace() {
+    let usual = flat("clustering", &[]).record;
+    assert_eq!((usual.points, usual.frames_every, usual.profiles_every), (Some(20_000), 1, 1));
+    assert_eq!((usual.fields, usual.fields_every), (Vec::new(), 1));
+    let sets = [
+        "record.particles={every_nth=5,points='all'}",
+        "record.profiles.every_nth=3",
+        "record.fields={names=['bound','density','bound'],every_nth=2}",
+    ];
+    let plan = flat("clustering", &sets).record;
+    assert_eq!((plan.points, plan.frames_every, plan.profiles_every), (None, 5, 3));
+    assert_eq!((plan.fields, plan.fields_every), (vec![Quantity::Density, Quantity::Bound], 2));
+    let short = flat("clustering", &["record.fields=['velocity']", "record.points=7"]);
+    assert_eq!((short.record.points, short.fields().count()), (Some(7), 1));
+    // Exact dynamics has no candidates to show.
+    let exact = flat("clustering", &["engine.kind=event-driven", "record.fields=['bound','density']"]);
+    assert_eq!(exact.fields().collect::<Vec<_>>(), [Quantity::Density]);
 }
 
 #[test]

@@ -22,6 +22,7 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, available: Option<u64>
         collapse::warning(scenario).into_iter().collect(),
         time_step(scenario),
         recordings(scenario),
+        fields(scenario),
         memory(scenario, available),
     ];
     groups.into_iter().flatten().collect()
@@ -160,6 +161,21 @@ fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// Fields that the engine does not have.
+fn fields<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let lacking =
+        scenario.record.fields.iter().filter(|&&named| scenario.fields().all(|field| field != named));
+    let names: Vec<&str> = lacking.map(|field| field.name()).collect();
+    let warning = || {
+        format!(
+            "record.fields names {}, but {} draws no candidate pairs: nothing is recorded of that",
+            names.join(" and "),
+            scenario.engine.kind.name()
+        )
+    };
+    (!names.is_empty()).then(warning).into_iter().collect()
 }
 
 /// More memory than there is.

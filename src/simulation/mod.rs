@@ -7,11 +7,13 @@ pub mod schedule;
 
 use std::borrow::Cow;
 
+use crate::engine::cell_counts::{self, CellCount};
 use crate::engine::report::Totals;
 use crate::engine::{Engine, EngineError, Horizon, Laps};
 use crate::law::boundary::Boundary;
 use crate::matter::gas::Gas;
 use crate::matter::overlaps::overlaps;
+use crate::observe::field::Quantity;
 use crate::observe::measure::{Cadence, Measure, Snapshot};
 use crate::observe::{measures, moments};
 use crate::random::{Phase, Streams};
@@ -25,6 +27,9 @@ use schedule::Spread;
 
 /// How many looks a measure of spread cadence takes during a run.
 const SPREAD_SAMPLES: u32 = 400;
+
+/// Name under which a saved state keeps what is counted in cells, beside the memories of measures.
+const CELL_COUNTS: &str = "cell-counts";
 
 /// Why a run cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -109,6 +114,9 @@ impl<'s, V: Vector> Simulation<'s, V> {
             measure.recall(&saved.memories[place].1);
             *taken = saved.samples.get(place).copied().unwrap_or(*taken);
         }
+        if let Some((_, memory)) = saved.memories.iter().find(|(name, _)| name == CELL_COUNTS) {
+            simulation.engine.count_in_cells(cell_counts::recalled(memory));
+        }
         simulation
     }
 
@@ -129,10 +137,15 @@ impl<'s, V: Vector> Simulation<'s, V> {
 
     fn assemble(scenario: &'s Scenario<V>, gas: Gas<V>, beginning: Beginning<V>) -> Self {
         let measures = measures(&scenario.setting(), scenario.record.measures.as_deref());
+        let mut engine =
+            assembly::engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
+        if scenario.fields().any(Quantity::is_counted) {
+            engine.count_in_cells(vec![CellCount::default(); gas.grid().number_of_cells()]);
+        }
         Simulation {
             scenario,
             gas,
-            engine: assembly::engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None),
+            engine,
             totals: Totals::default(),
             pouring: scenario.source.clone().map(|source| Pouring::new(source, scenario)),
             limits: Limits::new(scenario),
@@ -264,6 +277,28 @@ impl<'s, V: Vector> Simulation<'s, V> {
         (&mut self.measures, Snapshot { gas: &self.gas, totals: &self.totals })
     }
 
+    /// What was counted in each cell of the gas since the start or since the counts were last taken, `[cell]`;
+    /// empty where no field needs it.
+    pub fn cell_counts(&self) -> &[CellCount] {
+        self.engine.cell_counts()
+    }
+
+    /// Begins to count from nothing again, in as many cells as before.
+    pub fn restart_cell_counts(&mut self) {
+        let cells = self.engine.cell_counts().len();
+        self.engine.count_in_cells(vec![CellCount::default(); cells]);
+    }
+
+    fn memories(&self) -> Vec<(String, Vec<f64>)> {
+        let mut memories: Vec<_> =
+            self.measures.iter().map(|measure| (measure.name().to_owned(), measure.memory())).collect();
+        let counts = self.engine.cell_counts();
+        if !counts.is_empty() {
+            memories.push((CELL_COUNTS.to_owned(), cell_counts::memory(counts)));
+        }
+        memories
+    }
+
     /// Everything that the next step and the final figures depend on.
     pub fn saved_state(&self, recordings: u64, states: u64) -> SavedState<'_, V> {
         SavedState {
@@ -278,7 +313,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             recordings,
             states,
             samples: self.samples.clone(),
-            memories: self.measures.iter().map(|m| (m.name().to_owned(), m.memory())).collect(),
+            memories: self.memories(),
             beginning: self.beginning,
             invalid_states: self.invalid_states,
         }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::engine::cell_counts::CellCount;
 use crate::engine::report::{Counts, StepReport};
 use crate::engine::{EngineState, NoLaps};
 use crate::scenario::initial;
@@ -57,6 +58,12 @@ impl Engine<DVec2> for Beats {
     }
 
     fn forget_pace(&mut self) {}
+
+    fn count_in_cells(&mut self, _counts: Vec<CellCount>) {}
+
+    fn cell_counts(&self) -> &[CellCount] {
+        &[]
+    }
 
     fn capacity(&self, _gas: &Gas<DVec2>) -> Option<u32> {
         None

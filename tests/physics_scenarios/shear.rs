@@ -128,7 +128,8 @@ fn state_after_steps(scenario: &Scenario<DVec2>) -> Vec<(DVec2, DVec2)> {
         simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
     let gas: &Gas<DVec2> = simulation.gas();
-    rows_by_identity(gas).map(|row| (gas.positions()[row], gas.velocities()[row])).collect()
+    let grain = |row: u32| (gas.positions()[row as usize], gas.velocities()[row as usize]);
+    rows_by_identity(gas).into_iter().map(grain).collect()
 }
 
 /// Whether `fast` has the positions of `slow` and `factor` times its velocities, bit for bit.

@@ -23,6 +23,9 @@ SCHEMAS = {
     "/state": "grainflow.State",
     "/walls": "foxglove.SceneUpdate",
 }
+# Topics `/fields/<name>` hold grids: of cells in a plane, or in space.
+GRIDS = {"foxglove.Grid", "foxglove.VoxelGrid"}
+FIELDS = {"density", "velocity", "temperature", "collisions", "attempts", "bound"}
 # foxglove.PackedElementField.NumericType
 NUMPY_TYPES = {1: "u1", 2: "i1", 3: "<u2", 4: "<i2", 5: "<u4", 6: "<i4", 7: "<f4", 8: "<f8"}
 
@@ -53,6 +56,20 @@ def points(cloud):
         }
     )
     return np.frombuffer(cloud.data, dtype=layout)
+
+
+def cells(grid):
+    """The cells of a foxglove.Grid or foxglove.VoxelGrid as a structured array [z, y, x], without copying."""
+    layout = np.dtype(
+        {
+            "names": [field.name for field in grid.fields],
+            "formats": [NUMPY_TYPES[field.type] for field in grid.fields],
+            "offsets": [field.offset for field in grid.fields],
+            "itemsize": grid.cell_stride,
+        }
+    )
+    rows = getattr(grid, "row_count", len(grid.data) // grid.row_stride)
+    return np.frombuffer(grid.data, dtype=layout).reshape(-1, rows, grid.column_count)
 
 
 def seconds(timestamp):
@@ -102,6 +119,25 @@ def check_particles(messages, grains, checks):
         checks.that(round(seconds(cloud.timestamp) * 1e9) // 1000 == log_time // 1000, "timestamps")
 
 
+def check_fields(topic, messages, channel, recordings, checks):
+    """`recordings`: (log time, grains) of each recording, by sequence number."""
+    name = topic.removeprefix("/fields/")
+    checks.that(name in FIELDS, f"{name} is a field")
+    for sequence, log_time, grid in messages:
+        array = cells(grid)
+        checks.that(set(array.dtype.names) <= {key.removeprefix("unit.") for key in channel.metadata}, "units")
+        checks.that(sequence in recordings, f"{topic}: recording {sequence} is there")
+        checks.that(recordings.get(sequence, (0, 0))[0] == log_time, f"{topic}: times are those of the recording")
+        checks.that(grid.frame_id == "world" and grid.pose.orientation.w == 1.0, "frame and pose of a field")
+        checks.that(grid.cell_size.x > 0 and grid.cell_size.y > 0, "cells have a size")
+        if name in {"velocity", "temperature"}:
+            continue  # not a number where there are no grains
+        checks.that(all(np.all(array[one] >= 0) for one in array.dtype.names), f"{topic} is not negative")
+        if name == "density":
+            grains = recordings.get(sequence, (0, 0))[1]
+            checks.that(np.any(array[name] > 0) == (grains > 0), f"{topic} shows grains where there are some")
+
+
 def check_states(messages, checks):
     whole = 0
     for _, state in messages:
@@ -139,6 +175,7 @@ def check_counts(path, summary, messages, checks):
 def main(path):
     checks = Checks()
     messages = defaultdict(list)
+    sequences = defaultdict(list)
     channels = {}
     with open(path, "rb") as file:
         reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
@@ -146,16 +183,27 @@ def main(path):
         summary = reader.get_summary()
         for schema, channel, message, decoded in reader.iter_decoded_messages(log_time_order=False):
             checks.that(message.log_time == message.publish_time, "log time and publish time agree")
-            checks.that(SCHEMAS.get(channel.topic) == schema.name, f"{channel.topic} holds {schema.name}")
+            is_field = channel.topic.startswith("/fields/") and schema.name in GRIDS
+            checks.that(is_field or SCHEMAS.get(channel.topic) == schema.name, f"{channel.topic} holds {schema.name}")
             channels[channel.topic] = channel
             messages[channel.topic].append((message.log_time, decoded))
+            sequences[channel.topic].append(message.sequence)
     for topic, found in messages.items():
         checks.that(np.all(np.diff([time for time, _ in found]) >= 0), f"{topic} rises")
     checks.that(messages["/measures"], "there are measures")
     if messages["/measures"]:
-        recordings = check_measures(messages["/measures"], channels["/measures"], scale, checks)
-        checks.that(len(messages["/particles"]) == recordings, "a frame for every recording")
-        check_particles(messages["/particles"], [one.grains_in_gas for _, one in messages["/measures"]], checks)
+        check_measures(messages["/measures"], channels["/measures"], scale, checks)
+        # Frames and fields belong to the recording of their sequence number.
+        recordings = {
+            number: (log_time, one.grains_in_gas)
+            for number, (log_time, one) in zip(sequences["/measures"], messages["/measures"])
+        }
+        framed = sequences["/particles"]
+        checks.that(set(framed) <= set(recordings), "a recording for every frame")
+        check_particles(messages["/particles"], [recordings[number][1] for number in framed], checks)
+        for topic in [topic for topic in messages if topic.startswith("/fields/")]:
+            numbered = [(number, *one) for number, one in zip(sequences[topic], messages[topic])]
+            check_fields(topic, numbered, channels[topic], recordings, checks)
     check_states(messages["/state"], checks)
     check_others(messages, checks)
     check_counts(path, summary, messages, checks)

@@ -138,8 +138,15 @@ fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
         let picture = frame(time, &columns, None);
         let row = [time, random(), time];
         let hash = format!("{index:064x}");
-        log.recording(&Recording { values: &row, state_hash: &hash, profiles: &[], frame: &picture })
-            .unwrap();
+        log.recording(&Recording {
+            values: &row,
+            state_hash: &hash,
+            grains: picture.grains,
+            profiles: &[],
+            frame: Some(&picture),
+            fields: &[],
+        })
+        .unwrap();
     }
     log.finish().unwrap();
     let length = fs::metadata(&path).unwrap().len();

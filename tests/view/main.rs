@@ -60,8 +60,15 @@ fn write_log(path: &Path, recordings: usize, points: Option<usize>) {
         let picture = frame(time, &grains(if index == 0 { 0 } else { GRAINS }, time), points);
         let row = [time, 100.0 - time, 2.0 * time];
         let hash = format!("{index:064x}");
-        log.recording(&Recording { values: &row, state_hash: &hash, profiles: &[], frame: &picture })
-            .unwrap();
+        log.recording(&Recording {
+            values: &row,
+            state_hash: &hash,
+            grains: picture.grains,
+            profiles: &[],
+            frame: Some(&picture),
+            fields: &[],
+        })
+        .unwrap();
     }
     log.finish().unwrap();
 }

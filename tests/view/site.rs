@@ -163,7 +163,15 @@ fn grains_of_a_mixture_have_their_own_diameters() {
     let picture = frame(0.0, &columns, None);
     let hash = "0".repeat(64);
     let row = [0.0, 1.0, 0.0];
-    log.recording(&Recording { values: &row, state_hash: &hash, profiles: &[], frame: &picture }).unwrap();
+    log.recording(&Recording {
+        values: &row,
+        state_hash: &hash,
+        grains: picture.grains,
+        profiles: &[],
+        frame: Some(&picture),
+        fields: &[],
+    })
+    .unwrap();
     columns.ids.reverse();
     columns.species = Some(vec![0, 0, 1, 0, 0, 0, 0, 0, 0]);
     let columns = std::borrow::Cow::Owned(columns);

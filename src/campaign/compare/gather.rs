@@ -31,7 +31,7 @@ pub(super) fn of_runs(
             let mut log = read_log(&folder.join(&run.folder).join("log.mcap"))?;
             if !entry.runs.is_empty() {
                 // Pictures are shown of the first alone.
-                log.frames = Vec::new();
+                (log.frames, log.fields) = (Vec::new(), Vec::new());
             }
             let (number, folder) = (run.replica, run.folder.clone());
             entry.runs.push(Replica { number, folder, log, summary: Some(summary.clone()) });

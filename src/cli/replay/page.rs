@@ -45,9 +45,12 @@ fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
     log.frames.retain(|frame| picker.takes(frame.time));
     let mut picker = selection.picker();
     let kept: Vec<bool> = log.series.iter().map(|row| picker.takes(row[0])).collect();
+    let times: Vec<f64> =
+        log.series.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(row, _)| row[0]).collect();
+    log.fields.retain(|field| times.contains(&field.time));
     let mut hashes = kept.iter();
     log.state_hashes.retain(|_| hashes.next().is_some_and(|&kept| kept));
-    let frames = std::mem::take(&mut log.frames);
+    let (frames, fields) = (std::mem::take(&mut log.frames), std::mem::take(&mut log.fields));
     let (metadata, scenario, walls) = (log.metadata.clone(), log.scenario.clone(), log.walls.clone());
     let (state_hashes, cut_off) = (std::mem::take(&mut log.state_hashes), log.cut_off.clone());
     let tables = tables_of(log, selection);
@@ -59,6 +62,7 @@ fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
         state_hashes,
         profiles: tables.profiles,
         frames,
+        fields,
         walls,
         cut_off,
     }

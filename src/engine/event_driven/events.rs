@@ -40,6 +40,7 @@ impl<V: Vector> World<V> {
         }
         // A rounding may make a grazing pair pass: the event is evaluated again, now that both stand here.
         if meeting.approach > 0.0 {
+            self.count_in_its_cell(one.position, separation);
             self.exchange_momentum(row, partner, &meeting, &mut velocities);
             for (row, velocity) in [(row, velocities[0]), (partner, velocities[1])] {
                 self.bodies[row as usize].velocity = velocity;

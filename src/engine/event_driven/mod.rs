@@ -8,6 +8,7 @@
 mod arrangement;
 mod body;
 mod calendar;
+mod cell_tally;
 mod cells;
 mod collapse;
 pub mod contact;
@@ -24,12 +25,14 @@ mod walls;
 mod world;
 mod year;
 
+use crate::engine::cell_counts::CellCount;
 use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
 use body::Event;
 pub use calendar::Usage;
+use cell_tally::CellTally;
 use laws::Laws;
 use rules::Structure;
 use world::World;
@@ -45,12 +48,14 @@ pub struct EventDriven<V: Vector> {
     /// The grains; nothing before the first step.
     world: Option<World<V>>,
     space: SortSpace<V>,
+    /// `[cell of the gas]`: what happened there; empty where nothing is counted.
+    cell_counts: Vec<CellCount>,
 }
 
 impl<V: Vector> EventDriven<V> {
     /// An engine under `laws` that finds partners by `structure`.
     pub fn new(laws: Laws<V>, structure: Structure) -> Self {
-        EventDriven { laws, structure, world: None, space: SortSpace::default() }
+        EventDriven { laws, structure, world: None, space: SortSpace::default(), cell_counts: Vec::new() }
     }
 
     /// How the calendar was used since its year began; nothing before the first step.
@@ -124,10 +129,15 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
         laps.start("maintenance");
         let world = self.world.get_or_insert_with(|| World::new(&self.laws, self.structure, gas));
         world.adopt(gas);
+        if !self.cell_counts.is_empty() {
+            let counts = std::mem::take(&mut self.cell_counts);
+            world.cell_tally = Some(CellTally { grid: gas.grid().clone(), counts });
+        }
         laps.start("events");
         let start = gas.time();
         let (per_grain, least) = EVENTS_PER_CALL;
         let reached = world.run(horizon, per_grain * gas.len() as u64 + least)?;
+        self.cell_counts = world.cell_tally.take().map(|tally| tally.counts).unwrap_or_default();
         laps.start("synchronise");
         world.synchronise(gas, reached.then_some(horizon.time), &mut self.space)?;
         Ok(world.report(gas.time() - start))
@@ -143,6 +153,14 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
 
     fn forget_pace(&mut self) {
         self.world = None;
+    }
+
+    fn count_in_cells(&mut self, counts: Vec<CellCount>) {
+        self.cell_counts = counts;
+    }
+
+    fn cell_counts(&self) -> &[CellCount] {
+        &self.cell_counts
     }
 
     fn capacity(&self, _gas: &Gas<V>) -> Option<u32> {

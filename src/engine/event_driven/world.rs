@@ -2,6 +2,7 @@
 
 use super::body::{Body, NONE, Plan};
 use super::calendar::{Calendar, Entry};
+use super::cell_tally::CellTally;
 use super::cells::{Cells, SLACK};
 use super::collapse::CollapseWatch;
 use super::laws::Laws;
@@ -53,6 +54,8 @@ pub(super) struct World<V: Vector> {
     pub(super) counts: Counts<V>,
     /// What events there were since the last report.
     pub(super) events: EventCounts,
+    /// What happens in each cell of the gas, where somebody counts it.
+    pub(super) cell_tally: Option<CellTally<V>>,
 }
 
 impl<V: Vector> World<V> {
@@ -103,6 +106,7 @@ impl<V: Vector> World<V> {
             watch: CollapseWatch::default(),
             counts: Counts::default(),
             events: EventCounts::default(),
+            cell_tally: None,
         }
     }
 

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::onlooker::Counter;
+use crate::engine::cell_counts::CellCount;
 use crate::matter::columns::Columns;
 use crate::matter::sort::number_of_parts;
 use crate::space::Vector;
@@ -30,6 +32,8 @@ pub(crate) struct Block<'a, V: Vector> {
     pub(crate) ids: &'a [u32],
     /// The cell each row goes to.
     pub(crate) targets: &'a mut [u32],
+    /// `[cell]`: what happens there; empty where nothing is counted.
+    counts: &'a mut [CellCount],
 }
 
 /// Cuts all cells into blocks of a fixed number of cells, and those into parts with about the same number of
@@ -54,6 +58,25 @@ pub(crate) fn parts<'a, V: Vector>(
             Part { blocks: blocks.collect() }
         })
         .collect()
+}
+
+/// Gives each block the counts of its cells out of those of all, `[cell]`; none where there are none. Bounds are forgotten.
+pub(crate) fn with_counts<'a, V: Vector>(
+    mut parts: Vec<Part<'a, V>>,
+    counts: &'a mut [CellCount],
+) -> Vec<Part<'a, V>> {
+    counts.iter_mut().for_each(|count| count.bound = 0.0);
+    let (mut rest, mut next) = (counts, 0);
+    if rest.is_empty() {
+        return parts;
+    }
+    for block in parts.iter_mut().flat_map(|part| &mut part.blocks) {
+        // Blocks without grains were left out.
+        let behind = std::mem::take(&mut rest).split_at_mut((block.cells.start - next) as usize).1;
+        (block.counts, rest) = behind.split_at_mut(block.cells.len());
+        next = block.cells.end;
+    }
+    parts
 }
 
 /// The rows of each part, contiguous from 0 on.
@@ -87,12 +110,13 @@ pub(crate) fn cut<'a, V: Vector>(
                 velocities: velocities.split_off_mut(..rows).expect("offsets count the rows"),
                 ids: ids.split_off(..rows).expect("offsets count the rows"),
                 targets: targets.split_off_mut(..rows).expect("offsets count the rows"),
+                counts: &mut [],
             }
         })
         .collect()
 }
 
-impl<V: Vector> Block<'_, V> {
+impl<'a, V: Vector> Block<'a, V> {
     /// The place of the block that holds `cell` among all blocks of a fixed number of cells.
     pub(crate) fn number_of(cell: u32) -> usize {
         cell as usize / CELLS_PER_BLOCK
@@ -101,6 +125,12 @@ impl<V: Vector> Block<'_, V> {
     /// The first cell of a block.
     pub(crate) fn first_cell(number: usize) -> u32 {
         (number * CELLS_PER_BLOCK) as u32
+    }
+
+    /// Who counts what happens in its cells, where somebody does.
+    pub(crate) fn take_counter(&mut self) -> Option<Counter<'a>> {
+        let counts = std::mem::take(&mut self.counts);
+        (!counts.is_empty()).then_some(Counter { first: self.cells.start, counts })
     }
 
     /// All its rows.

@@ -10,6 +10,7 @@ use super::blocks::Block;
 use super::displacement::Displacement;
 use super::enskog::EnskogFactors;
 use super::laws::Laws;
+use super::onlooker::Onlooker;
 use super::relative_speeds::RelativeSpeeds;
 use super::tally::Tally;
 use crate::law::impact::Impacts;
@@ -102,10 +103,44 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
         block: &mut Block<'_, V>,
         offsets: &[u32],
         tally: &mut Tally<V>,
+        displace: impl FnMut(Displaced<V>, &mut [V]) -> bool,
+    ) {
+        match block.take_counter() {
+            None => self.collide_before(&mut (), block, offsets, tally, displace),
+            Some(mut counter) => self.collide_counted(&mut counter, block, offsets, tally, displace),
+        }
+    }
+
+    /// Apart, so that counting changes nothing of the code without it.
+    #[cold]
+    #[inline(never)]
+    fn collide_counted(
+        &self,
+        counter: &mut impl Onlooker,
+        block: &mut Block<'_, V>,
+        offsets: &[u32],
+        tally: &mut Tally<V>,
+        displace: impl FnMut(Displaced<V>, &mut [V]) -> bool,
+    ) {
+        self.collide_before(counter, block, offsets, tally, displace);
+    }
+
+    /// [`PairCollisions::collide`] before the eyes of `onlooker`.
+    #[inline(always)]
+    fn collide_before<O: Onlooker>(
+        &self,
+        onlooker: &mut O,
+        block: &mut Block<'_, V>,
+        offsets: &[u32],
+        tally: &mut Tally<V>,
         mut displace: impl FnMut(Displaced<V>, &mut [V]) -> bool,
     ) {
         let Draws { candidates, cells, mut random } = self.draw(block, offsets, tally);
         tally.counts.candidates += candidates.len() as u64;
+        if O::LOOKS {
+            cells.iter().for_each(|drawn| onlooker.bounded(drawn.number, drawn.bound));
+            candidates.iter().for_each(|candidate| onlooker.tried(cells[candidate.cell as usize].number));
+        }
         for &Candidate { pair, cell, threshold } in &candidates {
             let pair = (pair.0 as usize, pair.1 as usize);
             let relative = block.velocities[pair.0] - block.velocities[pair.1];
@@ -119,6 +154,7 @@ impl<'a, V: Vector, R: Restitution> PairCollisions<'a, V, R> {
                 times += excess(square / bound, &mut random);
             }
             for _ in 0..times {
+                onlooker.collided(number);
                 self.collide_pair(number, pair, block, tally, &mut random, &mut displace);
             }
         }

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicU32;
 
 use super::Step;
 use super::admission::{Moves, Rejected};
-use super::blocks::{Block, Part, parts, rows_of};
+use super::blocks::{Block, Part, parts, rows_of, with_counts};
 use super::cell_collisions::{CellCollisionRules, CellCollisions};
 use super::cell_pairs::PairCollisions;
 use super::coloured_pass::{ColouredPass, Contested};
@@ -16,6 +16,7 @@ use super::parallel;
 use super::rules::{Admission, HsmcRules};
 use super::tally::{Speeds, Tally};
 use super::wishes::{Places, Wish, Wishes};
+use crate::engine::cell_counts::CellCount;
 use crate::law::piecewise::PiecewiseLinear;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
@@ -79,14 +80,14 @@ impl<V: Vector> ExcludedVolume<V> {
         self.cell_collisions.sweep(rules, gas, laws.streams, step.number, &mut tally.counts);
     }
 
-    /// Pairs collide inside cells and are displaced where there is room.
+    /// Pairs collide inside cells and are displaced where there is room. Counts of cells are kept up where there are any.
     pub(crate) fn collide_pairs<R: Restitution>(
         &mut self,
         laws: &Laws<V, R>,
         gas: &mut Gas<V>,
         space: &mut SortSpace<V>,
         step: Step,
-        tally: &mut Tally<V>,
+        (tally, cell_counts): (&mut Tally<V>, &mut [CellCount]),
     ) {
         let capacity = self.capacity(gas);
         let (grid, offsets, columns) = gas.parts_mut();
@@ -94,7 +95,8 @@ impl<V: Vector> ExcludedVolume<V> {
         let wishes =
             Wishes { places: self.places(laws, grid, offsets, capacity, step), visitors: &self.visitors };
         let collisions = PairCollisions::new(laws, grid, offsets, step);
-        let parts = with_wishes(parts(offsets, columns, &mut space.cells), &mut self.wishes, grid);
+        let parts = with_counts(parts(offsets, columns, &mut space.cells), cell_counts);
+        let parts = with_wishes(parts, &mut self.wishes, grid);
         let results = parallel::each(parts.into_iter(), |part| {
             let blocks = part.into_iter().map(|(mut block, list)| {
                 let mut tally = Tally::default();

@@ -1,12 +1,13 @@
 //! The step of the gas engines, DSMC and CBA: collide a cell, move its grains, one pass over memory.
 
 use super::Step;
-use super::blocks::{Block, parts, rows_of};
+use super::blocks::{Block, parts, rows_of, with_counts};
 use super::cell_pairs::{Displaced, PairCollisions};
 use super::flight::Flights;
 use super::laws::{Laws, Room};
 use super::parallel;
 use super::tally::{Speeds, Tally};
+use crate::engine::cell_counts::CellCount;
 use crate::law::restitution::Restitution;
 use crate::matter::gas::{Gas, SortSpace};
 use crate::matter::sort::Counter;
@@ -19,12 +20,14 @@ struct GasPass<'a, V: Vector, R: Restitution> {
     flights: Flights<'a, V, R>,
 }
 
-/// Collides and moves all grains; `space.cells` tells where each one goes.
+/// Collides and moves all grains; `space.cells` tells where each one goes. `cell_counts` `[cell]` are kept up where there
+/// are any.
 pub(crate) fn collide_and_move<V: Vector, R: Restitution>(
     laws: &Laws<V, R>,
     gas: &mut Gas<V>,
     space: &mut SortSpace<V>,
     step: Step,
+    cell_counts: &mut [CellCount],
 ) -> Tally<V> {
     let (grid, offsets, columns) = gas.parts_mut();
     let pass = GasPass {
@@ -32,7 +35,7 @@ pub(crate) fn collide_and_move<V: Vector, R: Restitution>(
         room: Room::at(grid, &laws.boundary, step.start),
         flights: Flights::new(laws, grid, step),
     };
-    let parts = parts(offsets, columns, &mut space.cells);
+    let parts = with_counts(parts(offsets, columns, &mut space.cells), cell_counts);
     let counters = space.sort.begin(rows_of(&parts), grid.number_of_cells());
     let tallies = parallel::each(parts.into_iter().zip(counters), |(part, mut counter)| {
         part.blocks.into_iter().map(|block| pass.block(block, offsets, &mut counter)).collect::<Vec<_>>()

@@ -18,6 +18,7 @@ mod gas_pass;
 pub mod laws;
 mod movers;
 mod number_set;
+mod onlooker;
 mod parallel;
 mod relative_speeds;
 pub mod rules;
@@ -25,6 +26,7 @@ mod tally;
 mod time_step;
 mod wishes;
 
+use crate::engine::cell_counts::CellCount;
 use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::law::impact::ImpactLaw;
@@ -48,6 +50,8 @@ pub struct Stochastic<V: Vector, R: Restitution> {
     excluded_volume: Option<ExcludedVolume<V>>,
     space: SortSpace<V>,
     state: EngineState,
+    /// `[cell]`: what happened there; empty where nothing is counted.
+    cell_counts: Vec<CellCount>,
 }
 
 /// One step: its number, beginning and length.
@@ -68,6 +72,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
             excluded_volume: excluded_volume.map(ExcludedVolume::new),
             space: SortSpace::default(),
             state: EngineState { largest_speed: -1.0, collision_rate: -1.0, ..EngineState::default() },
+            cell_counts: Vec::new(),
         }
     }
 
@@ -91,7 +96,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
     /// DSMC and CBA: pair collisions with displacement and the move, fused over each cell; one sort.
     fn gas_step(&mut self, gas: &mut Gas<V>, step: Step, laps: &mut dyn Laps) -> Tally<V> {
         laps.start("pair collisions and move");
-        let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step);
+        let tally = gas_pass::collide_and_move(&self.laws, gas, &mut self.space, step, &mut self.cell_counts);
         laps.start("sort");
         gas.sort_counted(&mut self.space, copy);
         tally
@@ -104,7 +109,7 @@ impl<V: Vector, R: Restitution> Stochastic<V, R> {
         laps.start("cell collisions");
         volume.collide_cells(&self.laws, gas, step, &mut tally);
         laps.start("pair collisions");
-        volume.collide_pairs(&self.laws, gas, &mut self.space, step, &mut tally);
+        volume.collide_pairs(&self.laws, gas, &mut self.space, step, (&mut tally, &mut self.cell_counts));
         laps.start("move");
         volume.advect(&self.laws, gas, &mut self.space, step, &mut tally);
         laps.start("admission");
@@ -158,6 +163,14 @@ impl<V: Vector, R: Restitution> Engine<V> for Stochastic<V, R> {
 
     fn forget_pace(&mut self) {
         (self.state.largest_speed, self.state.collision_rate) = (-1.0, -1.0);
+    }
+
+    fn count_in_cells(&mut self, counts: Vec<CellCount>) {
+        self.cell_counts = counts;
+    }
+
+    fn cell_counts(&self) -> &[CellCount] {
+        &self.cell_counts
     }
 
     fn capacity(&self, gas: &Gas<V>) -> Option<u32> {

@@ -137,7 +137,9 @@ fn enumeration(table: &EnumTable) -> EnumDescriptorProto {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observe::field::{Field, Quantity};
     use crate::record::frame::{frame, point_cloud};
+    use crate::record::grids::encode;
     use crate::record::schema::{Described, foxglove, grainflow};
     use crate::record::state::SavedState;
     use crate::record::walls::scene;
@@ -222,6 +224,20 @@ mod tests {
             grainflow::ProfileColumn { name: "x".to_owned(), unit: "1".to_owned(), values: vec![1.0] };
         let profile = grainflow::Profile { time: 1.0, name: "p".to_owned(), columns: vec![column] };
         assert_eq!(described(&profile).len(), 6);
+    }
+
+    #[test]
+    fn grids_follow_their_descriptions() {
+        for (depth, table) in [(0.0, &foxglove::Grid::TABLE), (1.0, &foxglove::VoxelGrid::TABLE)] {
+            let components = Quantity::Density.components(2);
+            let (side, cells, values) = ([1.0, 1.0, depth], [2, 1, 1], vec![vec![0.5, 0.25]]);
+            let field = Field { side, cells, components, values, ..Field::default() };
+            let set = FileDescriptorSet::decode(descriptor_set(table).as_slice()).unwrap();
+            let seen = walk(&set, &table.full_name(), &encode(&field, 1_500_000_000));
+            for name in ["cell_size", "row_stride", "column_count", "fields", "data", "pose"] {
+                assert!(seen.contains(&format!("{}.{name}", table.name)), "{name} in {seen:?}");
+            }
+        }
     }
 
     #[test]

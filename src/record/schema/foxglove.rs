@@ -1,5 +1,5 @@
 //! The well-known messages that viewers draw, as Foxglove publishes them: grains as a
-//! `foxglove.PointCloud`, the box as a `foxglove.SceneUpdate`.
+//! `foxglove.PointCloud`, fields as `foxglove.Grid` and `foxglove.VoxelGrid`, the box as a `foxglove.SceneUpdate`.
 //!
 //! Also what a log never holds is described, so that viewers find every field they look for.
 
@@ -29,6 +29,16 @@ message! {
         seconds: i64 = 1 [int64],
         /// Nanoseconds.
         nanos: i32 = 2 [int32],
+    }
+}
+
+message! {
+    /// A vector in a plane.
+    "foxglove" "foxglove/Vector2.proto" Vector2 {
+        /// Along x.
+        x: f64 = 1 [double],
+        /// Along y.
+        y: f64 = 2 [double],
     }
 }
 
@@ -132,6 +142,58 @@ message! {
         fields: Vec<PackedElementField> = 5 [message, repeated] ".foxglove.PackedElementField",
         /// The points, little-endian.
         data: Vec<u8> = 6 [bytes = "vec"],
+    }
+}
+
+message! {
+    /// A grid of cells in a plane.
+    "foxglove" "foxglove/Grid.proto" Grid {
+        /// When.
+        timestamp: Option<Timestamp> = 1 [message, optional] ".google.protobuf.Timestamp",
+        /// Frame of reference.
+        frame_id: String = 2 [string],
+        /// Where the lower corner of the first cell is.
+        pose: Option<Pose> = 3 [message, optional] ".foxglove.Pose",
+        /// Cells along x.
+        column_count: u32 = 4 [fixed32],
+        /// Sides of a cell.
+        cell_size: Option<Vector2> = 5 [message, optional] ".foxglove.Vector2",
+        /// Bytes from one row to the next.
+        row_stride: u32 = 6 [fixed32],
+        /// Bytes from one cell to the next.
+        cell_stride: u32 = 7 [fixed32],
+        /// What a cell holds.
+        fields: Vec<PackedElementField> = 8 [message, repeated] ".foxglove.PackedElementField",
+        /// The cells, x fastest, little-endian.
+        data: Vec<u8> = 9 [bytes = "vec"],
+    }
+}
+
+message! {
+    /// A grid of cells in space.
+    "foxglove" "foxglove/VoxelGrid.proto" VoxelGrid {
+        /// When.
+        timestamp: Option<Timestamp> = 1 [message, optional] ".google.protobuf.Timestamp",
+        /// Frame of reference.
+        frame_id: String = 2 [string],
+        /// Where the lower corner of the first cell is.
+        pose: Option<Pose> = 3 [message, optional] ".foxglove.Pose",
+        /// Cells along y.
+        row_count: u32 = 4 [fixed32],
+        /// Cells along x.
+        column_count: u32 = 5 [fixed32],
+        /// Sides of a cell.
+        cell_size: Option<Vector3> = 6 [message, optional] ".foxglove.Vector3",
+        /// Bytes from one slice to the next.
+        slice_stride: u32 = 7 [fixed32],
+        /// Bytes from one row to the next.
+        row_stride: u32 = 8 [fixed32],
+        /// Bytes from one cell to the next.
+        cell_stride: u32 = 9 [fixed32],
+        /// What a cell holds.
+        fields: Vec<PackedElementField> = 10 [message, repeated] ".foxglove.PackedElementField",
+        /// The cells, x fastest, z slowest, little-endian.
+        data: Vec<u8> = 11 [bytes = "vec"],
     }
 }
 

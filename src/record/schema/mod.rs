@@ -38,6 +38,8 @@ pub(crate) fn digest(text: &str) -> String {
 /// Where the kinds of messages go.
 pub(crate) mod topic {
     pub(crate) const MEASURES: &str = "/measures";
+    /// What stands before the name of a field.
+    pub(crate) const FIELDS: &str = "/fields/";
     pub(crate) const PARTICLES: &str = "/particles";
     pub(crate) const PROFILES: &str = "/profiles";
     pub(crate) const STATE: &str = "/state";
@@ -137,6 +139,7 @@ pub(crate) use message;
 pub(crate) const ALL: &[MessageTable] = &[
     foxglove::Timestamp::TABLE,
     foxglove::Duration::TABLE,
+    foxglove::Vector2::TABLE,
     foxglove::Vector3::TABLE,
     foxglove::Point3::TABLE,
     foxglove::Quaternion::TABLE,
@@ -145,6 +148,8 @@ pub(crate) const ALL: &[MessageTable] = &[
     foxglove::KeyValuePair::TABLE,
     foxglove::PackedElementField::TABLE,
     foxglove::PointCloud::TABLE,
+    foxglove::Grid::TABLE,
+    foxglove::VoxelGrid::TABLE,
     foxglove::ArrowPrimitive::TABLE,
     foxglove::CubePrimitive::TABLE,
     foxglove::SpherePrimitive::TABLE,

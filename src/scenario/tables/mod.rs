@@ -2,6 +2,7 @@
 
 pub(super) mod boundary;
 pub(super) mod calibrated;
+pub(super) mod channels;
 pub(super) mod engine;
 pub(super) mod head;
 pub(super) mod initial;

@@ -2,16 +2,14 @@
 
 use crate::scenario::bound::Bound;
 use crate::scenario::model::{RecordPlan, RunLimits, Spacing};
-use crate::scenario::reader::{Section, kind};
+use crate::scenario::reader::Section;
 use crate::scenario::schema::{self, MEASURES};
-use crate::scenario::suggest::did_you_mean;
+use crate::scenario::tables::channels::{self, Channels, names};
 
 /// The most recordings of one run.
 const MOST_RECORDINGS: u64 = 1_000_000;
 /// The most states of one run, beside the one at its end.
 const MOST_STATES: u64 = 10_000;
-/// Points of a frame unless `record.points` says otherwise.
-const USUAL_POINTS: u32 = 20_000;
 
 /// Reads `[record]`; `limits` of the run as far as they are known.
 pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -> Option<RecordPlan> {
@@ -20,7 +18,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         return None;
     }
     let spacing = spacing(&record, limits);
-    let points = points(&record);
+    let channels = channels::read(&record);
     let measures = measures(&record);
     let states = record.whole("states", 0, MOST_STATES).or(4);
     let state_every = state_every(&record, limits);
@@ -34,9 +32,14 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         );
         return None;
     }
+    let Channels { points, frames_every, profiles_every, fields, fields_every } = channels?;
     Some(RecordPlan {
         spacing: spacing?,
-        points: points?,
+        points,
+        frames_every,
+        profiles_every,
+        fields,
+        fields_every,
         measures: measures?,
         states: states? as u32,
         state_every: state_every?,
@@ -95,44 +98,10 @@ fn state_every(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Option
     Some(every)
 }
 
-fn points(record: &Section<'_>) -> Option<Option<u32>> {
-    match record.item("points").map(|item| item.as_str()) {
-        Some(Some("all")) => Some(None),
-        Some(Some(text)) => {
-            record.mistake("points", format!("\"{text}\" is not known; write a whole number or \"all\""));
-            None
-        }
-        _ => {
-            let points = record.whole("points", 1, u64::from(u32::MAX));
-            points.or(u64::from(USUAL_POINTS)).map(|points| Some(points as u32))
-        }
-    }
-}
-
 fn measures(record: &Section<'_>) -> Option<Option<Vec<String>>> {
     const KEY: &str = "measures";
-    let Some(item) = record.item(KEY) else { return Some(None) };
-    let Some(list) = item.as_array() else {
-        record.mistake(KEY, format!("must be a list of names, not {}; write [\"energy\"]", kind(item)));
-        return None;
-    };
-    let mut names: Vec<String> = Vec::new();
-    let mut sound = true;
-    for value in list {
-        match value.as_str() {
-            Some(name) if MEASURES.contains(&name) => {
-                if !names.iter().any(|known| known == name) {
-                    names.push(name.to_owned());
-                }
-            }
-            _ => {
-                let name = value.as_str().map_or_else(|| value.to_string().trim().to_owned(), str::to_owned);
-                let choose = format!("choose from {}", MEASURES.join(", "));
-                let remedy = did_you_mean(&name, MEASURES.iter().copied(), &choose);
-                record.mistake(KEY, format!("\"{name}\" is not a measure; {remedy}"));
-                sound = false;
-            }
-        }
+    if !record.has(KEY) {
+        return Some(None);
     }
-    sound.then_some(Some(names))
+    names(record, KEY, "a measure", &MEASURES).map(Some)
 }
