@@ -1,6 +1,6 @@
 //! `grainflow run`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
 
 use clap::Args;
@@ -10,7 +10,9 @@ use super::input::ScenarioInput;
 use super::progress::Progress;
 use super::{Exit, complain};
 use crate::run::Outcome;
+use crate::scenario::check::check_on;
 use crate::scenario::model::AnyScenario;
+use crate::stopwatch::Machine;
 
 /// Run a scenario and write a run folder: log, tables, summary, report
 #[derive(Args, Debug)]
@@ -53,6 +55,9 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
         return Exit::RunFailed;
     }
     let folder = arguments.out.clone().unwrap_or_else(|| usual_folder(&scenario));
+    if !arguments.quiet {
+        warn(&scenario, &folder);
+    }
     let mut progress = Progress::new(arguments.quiet);
     let result =
         crate::run::run(&scenario, &folder, arguments.force, &STOP, &mut |status| progress.tell(status));
@@ -68,6 +73,13 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
             complain(&error);
             if error.is_bad_input() { Exit::BadInput } else { Exit::RunFailed }
         }
+    }
+}
+
+/// Says what may spoil the run, before it hurts.
+fn warn(scenario: &AnyScenario, folder: &Path) {
+    for warning in check_on(scenario, Machine::holding(folder)).warnings {
+        eprintln!("warning: {warning}");
     }
 }
 

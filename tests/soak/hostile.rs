@@ -5,10 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use grainflow::engine::{Horizon, NoLaps};
 use grainflow::record::reader::{last_state, read_log};
 use grainflow::record::recover::recover;
 use grainflow::scenario::check::check;
-use grainflow::scenario::{Overrides, builtin, parse, parse_in};
+use grainflow::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use grainflow::scenario::{Overrides, builtin, initial, parse, parse_in};
+use grainflow::simulation::Simulation;
+use grainflow::space::Vector;
 use grainflow::stopwatch::peak_memory_bytes;
 
 use super::draw::{Dice, Units, scenario_text};
@@ -143,12 +147,35 @@ impl Range {
     }
 }
 
-/// Looks at what a scenario means, too; without the state of its grains, and not where there are very many cells.
-fn take(scenario: Option<grainflow::scenario::model::AnyScenario>) -> bool {
+/// Looks at what a scenario means, too, and takes the first steps of a small one.
+fn take(scenario: Option<AnyScenario>) -> bool {
     let Some(scenario) = scenario else { return false };
     let said = check(&scenario).to_string();
     assert!(!said.contains("NaN"), "check says NaN:\n{said}");
+    match &scenario {
+        AnyScenario::Two(scenario) => begin(scenario),
+        AnyScenario::Three(scenario) => begin(scenario),
+    }
     true
+}
+
+/// A run may end with an error of its own, never with a panic.
+fn begin<V: Vector>(scenario: &Scenario<V>) {
+    let from_log = matches!(scenario.initial.positions, InitialPositions::Log(_));
+    if scenario.count > 300 || scenario.grid().number_of_cells() > 20_000 || from_log {
+        return;
+    }
+    let Ok(gas) = initial::build(scenario, None) else { return };
+    if scenario.initial.equilibrate > 2.0 {
+        return;
+    }
+    let Ok(mut simulation) = Simulation::start(scenario, gas, &mut NoLaps) else { return };
+    for _ in 0..4 {
+        let horizon = Horizon { collisions: 200, ..Horizon::NONE };
+        if simulation.end_reason().is_some() || simulation.advance(&mut NoLaps, horizon).is_err() {
+            return;
+        }
+    }
 }
 
 /// What is fired.
