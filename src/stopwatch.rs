@@ -1,5 +1,6 @@
 //! The wall clock and the machine: the only file that looks at either.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::engine::Laps;
@@ -79,8 +80,29 @@ fn kilobytes(table: &str, key: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
+/// What the machine has to give, where the system tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Machine {
+    /// Memory that a new process can have [bytes].
+    pub memory: Option<u64>,
+    /// Room on the disk of a folder [bytes].
+    pub disk: Option<u64>,
+}
+
+impl Machine {
+    /// This machine, with the disk that holds `folder`, or will hold it.
+    pub fn holding(folder: &Path) -> Self {
+        // Where nothing but names are missing, the last folder that is there has the disk.
+        let disk = folder.ancestors().find_map(|place| {
+            let place = if place.as_os_str().is_empty() { Path::new(".") } else { place };
+            fs4::available_space(place).ok()
+        });
+        Machine { memory: available_memory_bytes(), disk }
+    }
+}
+
 /// Memory that a new process can have, where the system tells [bytes].
-pub fn available_memory_bytes() -> Option<u64> {
+fn available_memory_bytes() -> Option<u64> {
     let facts = std::fs::read_to_string("/proc/meminfo").ok()?;
     kilobytes(&facts, "MemAvailable:")
 }

@@ -257,6 +257,38 @@ fn functions_are_short() {
     assert!(complaints.is_empty(), "functions have at most {LONGEST_FUNCTION} lines\n{complaints}");
 }
 
+/// Licences that let a program which is built of such parts be passed on.
+const LICENCES: [&str; 8] =
+    ["MIT", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "Zlib", "Unlicense", "Unicode-3.0", "0BSD"];
+
+/// Whether one of the choices of every part of a licence expression is among [`LICENCES`].
+fn may_be_passed_on(expression: &str) -> bool {
+    let expression = expression.replace(['(', ')'], "").replace('/', " OR ");
+    expression.split(" AND ").all(|part| part.split(" OR ").any(|choice| LICENCES.contains(&choice.trim())))
+}
+
+#[test]
+fn dependencies_are_free_locked_and_old_enough() {
+    assert!(may_be_passed_on("(MIT OR GPL-3.0) AND Unicode-3.0") && may_be_passed_on("Unlicense/MIT"));
+    assert!(!may_be_passed_on("MIT AND GPL-3.0") && !may_be_passed_on("LGPL-2.1-or-later"));
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    cargo.args(["metadata", "--format-version", "1", "--locked", "--offline"]);
+    let output = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    let version = |text: &str| -> Vec<u32> { text.split('.').map(|part| part.parse().unwrap()).collect() };
+    let ours = packages.iter().find(|package| package["name"] == "grainflow").unwrap();
+    let oldest = version(ours["rust_version"].as_str().unwrap());
+    assert!(packages.len() > 50);
+    for package in packages {
+        let (name, licence) = (&package["name"], package["license"].as_str().unwrap_or_default());
+        assert!(may_be_passed_on(licence), "{name} has the licence {licence:?}");
+        let needs = package["rust_version"].as_str().map(version);
+        assert!(needs.as_ref().is_none_or(|needs| *needs <= oldest), "{name} needs Rust {needs:?}");
+    }
+}
+
 #[test]
 fn the_rules_see_what_breaks_them() {
     let file = |path: &str, text: &str| Source { path: path.to_owned(), text: text.to_owned() };

@@ -1,11 +1,13 @@
 //! `grainflow check`.
 
+use std::path::Path;
+
 use clap::Args;
 
 use super::input::ScenarioInput;
 use super::{Exit, complain};
-use crate::scenario::check::check_for_memory;
-use crate::stopwatch::available_memory_bytes;
+use crate::scenario::check::check_on;
+use crate::stopwatch::Machine;
 
 /// Say what a scenario means, or all that is wrong with it; nothing runs
 #[derive(Args, Debug)]
@@ -17,7 +19,7 @@ pub(super) struct CheckArguments {
 pub(super) fn check(arguments: &CheckArguments) -> Exit {
     match arguments.input.load() {
         Ok(scenario) => {
-            println!("{}", check_for_memory(&scenario, available_memory_bytes()));
+            println!("{}", check_on(&scenario, Machine::holding(Path::new("out"))));
             Exit::Done
         }
         Err(error) => {

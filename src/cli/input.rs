@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::scenario::error::ScenarioError;
+use crate::scenario::error::{Mistake, Place, ScenarioError};
 use crate::scenario::model::AnyScenario;
 use crate::scenario::{Overrides, load};
 
@@ -29,7 +29,25 @@ pub(super) struct ScenarioInput {
 impl ScenarioInput {
     /// The checked scenario.
     pub(super) fn load(&self) -> Result<AnyScenario, ScenarioError> {
+        if let Some(conflict) = self.conflict() {
+            return Err(conflict);
+        }
         let overrides = Overrides { sets: self.sets.clone(), engine: self.engine.clone(), seed: self.seed };
         load(&self.scenario, &overrides)
+    }
+    /// A key that two options set: which of them is meant nobody can know.
+    fn conflict(&self) -> Option<ScenarioError> {
+        let options =
+            [("--engine", "engine.kind", self.engine.is_some()), ("--seed", "seed", self.seed.is_some())];
+        let key = |set: &String| set.split('=').next().map(|key| key.trim().to_owned());
+        let mistake = |(order, set): (usize, &String)| {
+            let (option, ..) =
+                options.iter().find(|(_, name, given)| *given && key(set).as_deref() == Some(name))?;
+            let place = Place::Option { order, name: format!("--set #{} '{set}'", order + 1) };
+            let message = format!("is also set by {option}; leave one of them out");
+            Some(Mistake { place, key: key(set)?, message })
+        };
+        let mistakes: Vec<Mistake> = self.sets.iter().enumerate().filter_map(mistake).collect();
+        (!mistakes.is_empty()).then(|| ScenarioError { file: self.scenario.clone(), mistakes })
     }
 }

@@ -1,12 +1,24 @@
 //! The command line: one file a verb. Only here anything is printed.
 
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "the command line is what prints")]
+/// As in the standard library, but without a panic where nobody can be told: see [`output`].
+macro_rules! print {
+    ($($text:tt)*) => { $crate::cli::output::put(format_args!($($text)*)) };
+}
+/// The same with an end of line.
+macro_rules! println {
+    ($($text:tt)*) => { $crate::cli::output::put(format_args!("{}\n", format_args!($($text)*))) };
+}
+/// The same to the standard error.
+macro_rules! eprintln {
+    ($($text:tt)*) => { $crate::cli::output::put_aside(format_args!("{}\n", format_args!($($text)*))) };
+}
 
 mod calibrate;
 mod check;
 mod compare;
 mod export;
 mod input;
+mod output;
 mod progress;
 mod recover;
 mod replay;
@@ -90,7 +102,7 @@ pub fn main() -> ExitCode {
         Command::Scenarios(arguments) => scenarios::scenarios(&arguments),
         Command::View(arguments) => view::view(&arguments),
     };
-    ExitCode::from(exit as u8)
+    ExitCode::from(output::ended(exit) as u8)
 }
 
 /// Prints `text`, or as much of it as somebody reads: one who closes the pipe has seen enough.

@@ -11,7 +11,9 @@ use super::progress::Progress;
 use super::{Exit, complain};
 use crate::run::resume::{ResumeError, Resumption};
 use crate::run::{Outcome, RunError};
+use crate::scenario::check::check_on;
 use crate::scenario::model::AnyScenario;
+use crate::stopwatch::Machine;
 
 const RESUMING: &str =
     "With --resume the new folder holds the whole run, to the same bits as without interruption;
@@ -70,6 +72,9 @@ pub(super) fn run(arguments: &RunArguments) -> Exit {
         return Exit::RunFailed;
     }
     let folder = arguments.out.clone().unwrap_or_else(|| usual_folder(&scenario));
+    if !arguments.quiet {
+        warn(&scenario, &folder);
+    }
     let mut progress = Progress::new(arguments.quiet);
     let result =
         crate::run::run(&scenario, &folder, arguments.force, &STOP, &mut |status| progress.tell(status));
@@ -130,6 +135,13 @@ fn conclude(result: Result<Outcome, RunError>, quiet: bool) -> Exit {
             complain(&error);
             if error.is_bad_input() { Exit::BadInput } else { Exit::RunFailed }
         }
+    }
+}
+
+/// Says what may spoil the run, before it hurts.
+fn warn(scenario: &AnyScenario, folder: &Path) {
+    for warning in check_on(scenario, Machine::holding(folder)).warnings {
+        eprintln!("warning: {warning}");
     }
 }
 

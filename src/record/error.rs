@@ -43,6 +43,12 @@ pub enum LogError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A folder, a pipe or a device.
+    #[error("{} is not a file but a folder, a pipe or a device; a log is a file, `log.mcap` in the folder of its run", path.display())]
+    NotAFile {
+        /// What was named.
+        path: PathBuf,
+    },
     /// The file holds nothing.
     #[error("the log {} is empty: the run that should have written it never began to record", path.display())]
     Empty {

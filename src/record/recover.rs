@@ -9,7 +9,7 @@ use mcap::records::{Channel, MessageHeader, Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::error::LogError;
-use super::scan::{BLOCK, check_magic, holds_attachment, length_limit, scan};
+use super::scan::{BLOCK, holds_attachment, length_limit, open, scan};
 use super::schema;
 use super::writer::options;
 
@@ -199,9 +199,7 @@ fn each_sound_record(
     visit: &mut dyn FnMut(Record<'_>) -> Result<(), LogError>,
 ) -> Result<(u64, bool), LogError> {
     let unreadable = |source| LogError::Read { path: path.to_owned(), source };
-    let mut file = File::open(path).map_err(unreadable)?;
-    let length = file.metadata().map_err(unreadable)?.len();
-    check_magic(path, &mut file, length)?;
+    let (mut file, length) = open(path)?;
     let limit = length_limit(length);
     let whole = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(limit);
     let mut reader = LinearReader::new_with_options(whole);

@@ -43,9 +43,7 @@ pub(crate) fn scan(
     visit: &mut dyn FnMut(Event<'_>) -> Result<(), Fault>,
 ) -> Result<Option<String>, LogError> {
     let unreadable = |source| LogError::Read { path: path.to_owned(), source };
-    let mut file = File::open(path).map_err(unreadable)?;
-    let length = file.metadata().map_err(unreadable)?.len();
-    check_magic(path, &mut file, length)?;
+    let (mut file, length) = open(path)?;
     let mut reader = LinearReader::new_with_options(options(length));
     let mut state = Progress::default();
     let mut position = 0;
@@ -121,17 +119,25 @@ impl From<McapError> for Fault {
     }
 }
 
-pub(crate) fn check_magic(path: &Path, file: &mut File, length: u64) -> Result<(), LogError> {
+/// The file of a log, at its start, and its length [bytes].
+pub(crate) fn open(path: &Path) -> Result<(File, u64), LogError> {
     let unreadable = |source| LogError::Read { path: path.to_owned(), source };
-    if length == 0 {
+    let facts = std::fs::metadata(path).map_err(unreadable)?;
+    // To open a pipe would wait for somebody who writes to it.
+    if !facts.is_file() {
+        return Err(LogError::NotAFile { path: path.to_owned() });
+    }
+    if facts.len() == 0 {
         return Err(LogError::Empty { path: path.to_owned() });
     }
+    let mut file = File::open(path).map_err(unreadable)?;
     let mut start = Vec::new();
     file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut start).map_err(unreadable)?;
     if start != MAGIC {
         return Err(LogError::NotMcap { path: path.to_owned() });
     }
-    file.rewind().map_err(unreadable)
+    file.rewind().map_err(unreadable)?;
+    Ok((file, facts.len()))
 }
 
 /// How long a record may be in a file of `file_length` bytes.

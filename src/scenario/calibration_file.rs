@@ -5,6 +5,7 @@
 //! empty lines and lines that begin with `#` are passed over.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
@@ -85,15 +86,18 @@ fn find<'a>(root: &'a mut dyn TableLike, names: &[&str]) -> Option<&'a mut dyn T
 /// Both columns of the file at `path`.
 fn read(path: &Path, columns: [(&str, Bound); 2]) -> Result<[Vec<f64>; 2], String> {
     let name = path.display();
-    let size = fs::metadata(path)
-        .map_err(|error| {
-            format!("{name} cannot be read: {error}; `grainflow calibrate` writes such a table")
-        })?
-        .len();
-    if size > LARGEST {
+    let unread = |error: std::io::Error| format!("{name} cannot be read: {error}");
+    let file = fs::File::open(path)
+        .map_err(|error| format!("{}; `grainflow calibrate` writes such a table", unread(error)))?;
+    let mut bytes = Vec::new();
+    // Whatever it is, no more of it is read than a table can have.
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(unread)?;
+    if bytes.len() as u64 > LARGEST {
         return Err(format!("{name} is larger than 1 MiB; a table is a short text"));
     }
-    let text = fs::read_to_string(path).map_err(|error| format!("{name} cannot be read: {error}"))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        format!("{name} is not UTF-8 text; a table is a CSV, lines of numbers below a line of names")
+    })?;
     points(&text, columns).map_err(|message| format!("{name}{message}"))
 }
 

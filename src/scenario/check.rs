@@ -10,6 +10,7 @@ use super::{cost, warnings};
 use crate::law::kinetic_theory::mean_free_path;
 use crate::law::piecewise::PiecewiseLinear;
 use crate::space::Vector;
+use crate::stopwatch::Machine;
 
 /// What a scenario means.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,18 +36,18 @@ impl fmt::Display for Check {
 
 /// Says what `scenario` means.
 pub fn check(scenario: &AnyScenario) -> Check {
-    check_for_memory(scenario, None)
+    check_on(scenario, Machine::default())
 }
 
-/// Says what `scenario` means on a machine that has so much memory to give [bytes].
-pub fn check_for_memory(scenario: &AnyScenario, available: Option<u64>) -> Check {
+/// Says what `scenario` means, and what it means for `machine`.
+pub fn check_on(scenario: &AnyScenario, machine: Machine) -> Check {
     match scenario {
-        AnyScenario::Two(scenario) => check_in_space(scenario, available),
-        AnyScenario::Three(scenario) => check_in_space(scenario, available),
+        AnyScenario::Two(scenario) => check_in_space(scenario, machine),
+        AnyScenario::Three(scenario) => check_in_space(scenario, machine),
     }
 }
 
-fn check_in_space<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> Check {
+fn check_in_space<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Check {
     let mut check = Check { facts: Vec::new(), warnings: Vec::new() };
     check.add("scenario", format!("{}: {}", scenario.name, scenario.title));
     check.add("engine", scenario.engine.kind.name().to_owned());
@@ -55,7 +56,7 @@ fn check_in_space<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> 
     check.laws(scenario);
     check.time(scenario);
     check.cost(scenario);
-    check.warnings = warnings::warnings(scenario, available);
+    check.warnings = warnings::warnings(scenario, machine);
     check
 }
 
@@ -225,7 +226,7 @@ pub(super) fn bytes(number: f64) -> String {
 }
 
 /// A duration as people say it: a factor of two is all that can be known.
-fn spoken(seconds: f64) -> String {
+pub(super) fn spoken(seconds: f64) -> String {
     const WORDS: [(f64, &str); 9] = [
         (2.0, "a second"),
         (7.0, "a few seconds"),

@@ -67,6 +67,18 @@ fn step_at<V: Vector>(scenario: &Scenario<V>, speed: f64) -> Option<f64> {
     [chosen, Some(longest)].into_iter().flatten().reduce(f64::min).filter(|step| step.is_finite())
 }
 
+/// A step of so many collisions per particle that is capped however the gas cools: what it would last, and what the
+/// cap allows [time]. Both go with 1/√T, so that this is told from the start.
+pub(super) fn capped_step<V: Vector>(scenario: &Scenario<V>) -> Option<(f64, f64)> {
+    let TimeStep::CollisionsPerParticle(collisions) = scenario.engine.time_step else { return None };
+    if scenario.engine.kind.is_event_driven() || scenario.gravity != V::ZERO {
+        return None;
+    }
+    let chosen = collisions / rates(scenario)?.collision_frequency;
+    let longest = longest_step(scenario, starting_speed(scenario));
+    (chosen > longest).then_some((chosen, longest))
+}
+
 /// Collisions of an event-driven run until its first limit, those of its equilibration included; `None` for
 /// engines with steps, and where grains begin at rest.
 pub(super) fn collisions<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {

@@ -1,7 +1,7 @@
 //! What may spoil a run that is not wrong.
 
 use super::bound::{rounded, shown};
-use super::check::{bytes, count_of, grains_per_cell};
+use super::check::{bytes, count_of, grains_per_cell, spoken};
 use super::estimate;
 use super::model::{EngineKind, EnskogFactor, Scenario, Spacing, TimeStep};
 use super::{collapse, cost, initial, pace};
@@ -9,21 +9,32 @@ use crate::law::boundary::Face;
 use crate::law::kinetic_theory::mean_free_path;
 use crate::law::restitution::{Constant, RestitutionLaw};
 use crate::space::Vector;
+use crate::stopwatch::Machine;
 
 /// Logs above this size are seldom meant [bytes].
 const LARGE_LOG: f64 = 1e10;
+/// Nobody waits longer for a run [s].
+const LONGEST_WAIT: f64 = 30.0 * 86_400.0;
+/// Fewer cells than this across a gap do not show its profile.
+const CELLS_OF_A_GRADIENT: u32 = 8;
+/// A step that is capped to less than this share of its length is another choice than it says.
+const CAPPED: f64 = 0.5;
 
-/// Everything that may spoil `scenario` on a machine that has so much memory to give [bytes].
-pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> Vec<String> {
+/// Everything that may spoil `scenario` on `machine`.
+pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Vec<String> {
     let groups = [
         engine(scenario),
         cells(scenario),
+        gradients(scenario),
         gravity(scenario),
         collapse::warning(scenario).into_iter().collect(),
         time_step(scenario),
+        capped_step(scenario),
         recordings(scenario),
         fields(scenario),
-        memory(scenario, available),
+        patience(scenario),
+        memory(scenario, machine),
+        disk(scenario, machine),
     ];
     groups.into_iter().flatten().collect()
 }
@@ -91,6 +102,28 @@ fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     warnings
 }
 
+/// Axes along which flow and density change from wall to wall, and cells that are too few to show how.
+fn gradients<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if scenario.engine.kind.is_event_driven() {
+        return warnings;
+    }
+    for axis in 0..V::DIMENSION {
+        let moving =
+            scenario.boundary.walls().any(|(other, _, wall)| other == axis && wall.largest_speed() > 0.0);
+        let falling = scenario.gravity[axis] != 0.0 && !scenario.boundary.is_periodic(axis);
+        let cells = scenario.cells[axis];
+        if (moving || falling) && cells < CELLS_OF_A_GRADIENT {
+            let (name, what) = (V::AXIS_NAMES[axis], if falling { "gravity" } else { "a moving wall" });
+            warnings.push(format!(
+                "{cells} cells along {name}: what {what} makes of density and flow there changes within a cell, and from \
+                 {CELLS_OF_A_GRADIENT} on it is resolved; reduce engine.cell_size or enlarge domain.size"
+            ));
+        }
+    }
+    warnings
+}
+
 /// Where gravity takes the grains.
 fn gravity<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -139,6 +172,20 @@ fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     warnings
 }
 
+/// A step that the cap decides, not the key.
+fn capped_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let capped = estimate::capped_step(scenario).filter(|(chosen, longest)| *longest < CAPPED * chosen);
+    let warning = |(chosen, longest)| {
+        format!(
+            "the step is capped throughout: engine.time_step.collisions_per_particle asks for {}, and half a cell at the \
+             largest speed takes {}; a larger engine.cell_size allows it, time_step = {{ crossing = 0.5 }} says what happens",
+            rounded(chosen),
+            rounded(longest)
+        )
+    };
+    capped.map(warning).into_iter().collect()
+}
+
 /// More recordings, or larger ones, than anybody wants.
 fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -178,25 +225,49 @@ fn fields<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     (!names.is_empty()).then(warning).into_iter().collect()
 }
 
-/// More memory than there is.
-fn memory<V: Vector>(scenario: &Scenario<V>, available: Option<u64>) -> Vec<String> {
-    let (needed, available) = (cost::memory(scenario), available.map(|bytes| bytes as f64));
-    let lacking = available.filter(|&available| needed > available);
-    let warning = |available| {
+/// More time than anybody has.
+fn patience<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let long = cost::seconds(scenario).filter(|seconds| seconds.least > LONGEST_WAIT);
+    let warning = |seconds: estimate::Estimate| {
         format!(
-            "the run takes about {} of memory, and {} are free; take fewer grains, cells, frames or points",
-            bytes(needed),
-            bytes(available)
+            "the run takes about {} on one core; fewer grains, a longer step or a lower limit of [run] make it shorter",
+            spoken(seconds.least)
         )
     };
-    lacking.map(warning).into_iter().collect()
+    long.map(warning).into_iter().collect()
+}
+
+/// More memory than there is.
+fn memory<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Vec<String> {
+    lacking(cost::memory(scenario), machine.memory, |needed, free| {
+        format!(
+            "the run takes about {needed} of memory, and {free} are free; take fewer grains, cells, frames or points"
+        )
+    })
+}
+
+/// A larger log than there is room for.
+fn disk<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Vec<String> {
+    lacking(cost::log_size(scenario), machine.disk, |needed, free| {
+        format!(
+            "the log takes about {needed} before compression, and the disk has room for {free}; free some, choose another \
+             --out, or take fewer record.frames, record.points or record.states"
+        )
+    })
+}
+
+/// What to say where more is needed than there is, if that is known [bytes].
+fn lacking(needed: f64, there: Option<u64>, words: impl Fn(String, String) -> String) -> Vec<String> {
+    let there = there.map(|bytes| bytes as f64).filter(|&there| needed > there);
+    there.map(|there| words(bytes(needed), bytes(there))).into_iter().collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::check::check_for_memory;
+    use crate::scenario::check::{check, check_on};
     use crate::scenario::model::AnyScenario;
     use crate::scenario::{Overrides, load};
+    use crate::stopwatch::Machine;
 
     fn scenario(name: &str, sets: &[&str]) -> AnyScenario {
         let sets = sets.iter().map(ToString::to_string).collect();
@@ -204,7 +275,7 @@ mod tests {
     }
 
     fn warned(name: &str, sets: &[&str]) -> String {
-        check_for_memory(&scenario(name, sets), None).warnings.join("\n")
+        check(&scenario(name, sets)).warnings.join("\n")
     }
 
     #[test]
@@ -266,10 +337,40 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_compared_with_what_is_free() {
+    fn memory_and_disk_are_compared_with_what_is_free() {
         let clustering = scenario("clustering", &[]);
-        assert!(check_for_memory(&clustering, Some(16_000_000_000)).warnings.is_empty());
-        let warnings = check_for_memory(&clustering, Some(50_000_000)).warnings;
-        assert!(warnings[0].contains("50.0 MB are free"), "{warnings:?}");
+        let warnings = |memory, disk| check_on(&clustering, Machine { memory, disk }).warnings;
+        assert!(warnings(Some(16_000_000_000), Some(16_000_000_000)).is_empty());
+        let said = warnings(Some(50_000_000), None);
+        assert!(said.len() == 1 && said[0].contains("50.0 MB are free"), "{said:?}");
+        let said = warnings(None, Some(2_000_000));
+        assert!(said.len() == 1 && said[0].contains("the disk has room for 2.0 MB"), "{said:?}");
+    }
+
+    #[test]
+    fn a_step_that_is_capped_throughout_is_said() {
+        let dilute = ["particles.volume_fraction=0.002", "engine.cell_size=5"];
+        let said = warned("cooling", &dilute);
+        assert!(said.contains("the step is capped throughout") && said.contains("crossing = 0.5"), "{said}");
+        assert_eq!(warned("cooling", &["engine.time_step={crossing=0.5}"]), "");
+        assert!(
+            !warned("cooling", &[&dilute[..], &["engine.kind=event-driven"]].concat()).contains("capped")
+        );
+    }
+
+    #[test]
+    fn too_few_cells_for_a_gradient_are_said() {
+        assert!(
+            warned("shear", &["engine.cell_size=8"]).contains("5 cells along y: what a moving wall makes")
+        );
+        assert!(!warned("shear", &[]).contains("cells along"));
+        let flat = ["domain.size[1]=0.012", "particles.count=5"];
+        assert!(warned("sedimentation", &flat).contains("6 cells along y: what gravity makes"));
+    }
+
+    #[test]
+    fn runs_that_nobody_waits_for_are_said() {
+        assert!(warned("heap", &["engine.time_step.fixed=1e-9"]).contains("days on one core; fewer grains"));
+        assert!(!warned("heap-full", &[]).contains("on one core"));
     }
 }

@@ -11,7 +11,7 @@ use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader, SummaryRead
 
 use crate::record::error::LogError;
 use crate::record::recover::chunk_records;
-use crate::record::scan::{Fault, check_magic, length_limit};
+use crate::record::scan::{self, Fault, length_limit};
 
 /// Kind and length in front of every record [byte].
 const PREFIX: u64 = 9;
@@ -34,10 +34,7 @@ pub(super) struct RawRecord {
 
 impl Records {
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
-        let unreadable = |source| LogError::Read { path: path.to_owned(), source };
-        let mut file = File::open(path).map_err(unreadable)?;
-        let length = file.metadata().map_err(unreadable)?.len();
-        check_magic(path, &mut file, length)?;
+        let (file, length) = scan::open(path)?;
         Ok(Records { path: path.to_owned(), file: Mutex::new(file), length })
     }
 

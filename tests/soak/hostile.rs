@@ -1,0 +1,218 @@
+//! Readers under fire: scenario files, `--set`, tables of calibration, logs and their recovery are given input that
+//! is nearly right. They may refuse it; they may not panic, hang or ask for memory without bound.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use grainflow::engine::{Horizon, NoLaps};
+use grainflow::record::reader::{last_state, read_log};
+use grainflow::record::recover::recover;
+use grainflow::scenario::check::check;
+use grainflow::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use grainflow::scenario::{Overrides, builtin, initial, parse, parse_in};
+use grainflow::simulation::Simulation;
+use grainflow::space::Vector;
+use grainflow::stopwatch::peak_memory_bytes;
+
+use super::draw::{Dice, Units, scenario_text};
+use super::trial::caught;
+use super::{logs, mutation};
+
+/// What is fired at.
+pub(crate) const TARGETS: [&str; 4] = ["scenario", "set", "table", "log"];
+/// The longest that one case may take on a loaded machine [s].
+const PATIENCE: f64 = 20.0;
+/// The most memory that the whole program may come to hold [bytes].
+const MEMORY: u64 = 2_000_000_000;
+
+/// Everything that wounds are made in.
+pub(crate) struct Range {
+    scenarios: Vec<String>,
+    sets: Vec<String>,
+    tables: Vec<String>,
+    logs: Vec<Vec<u8>>,
+    place: PathBuf,
+}
+
+/// What many cases came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fired {
+    pub(crate) cases: u64,
+    /// Input that was taken in spite of its wounds.
+    pub(crate) accepted: u64,
+    /// The longest case [s].
+    pub(crate) longest: f64,
+}
+
+impl Range {
+    /// Reads what is kept in `tests/`, and works in `place`.
+    pub(crate) fn new(place: &Path) -> Result<Self, String> {
+        let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+        let mut scenarios: Vec<String> =
+            builtin::list().iter().filter_map(|(name, _)| builtin::text(name)).map(str::to_owned).collect();
+        scenarios.extend(texts(&tests.join("scenario_errors"))?);
+        scenarios.extend((1..40).map(|seed| scenario_text(seed, Units::ONE)));
+        let sets = texts(&tests.join("corpus/sets"))?.concat().lines().map(str::to_owned).collect();
+        let mut tables = texts(&tests.join("corpus/tables"))?;
+        tables.extend(texts(&tests.join("tables"))?);
+        let mut files = logs::written(place)?;
+        files.extend(contents(&tests.join("corpus/logs"))?);
+        Ok(Range { scenarios, sets, tables, logs: files, place: place.to_owned() })
+    }
+
+    /// Case number `seed` against `target`; the message of one that is not borne says how to see it again.
+    pub(crate) fn fire(&self, target: &str, seed: u64, fired: &mut Fired) -> Result<(), String> {
+        let dice = &mut Dice::new(seed);
+        let since = Instant::now();
+        let mut shot = Shot::default();
+        let result = caught(|| {
+            shot = self.shot(target, dice);
+            self.land(target, &shot)
+        });
+        let seconds = since.elapsed().as_secs_f64();
+        fired.cases += 1;
+        fired.accepted += u64::from(result == Ok(true));
+        fired.longest = fired.longest.max(seconds);
+        let problem = match result {
+            Err(problem) => problem,
+            Ok(_) if seconds > PATIENCE => format!("took {seconds:.1} s"),
+            Ok(_) if seed % 256 == 0 && peak_memory_bytes().is_some_and(|peak| peak > MEMORY) => {
+                "the program has come to hold more than 2 GB".to_owned()
+            }
+            Ok(_) => return Ok(()),
+        };
+        Err(format!("{target} #{seed}: {problem}\n{}", shot.shown()))
+    }
+
+    fn shot(&self, target: &str, dice: &mut Dice) -> Shot {
+        let any = |dice: &mut Dice, texts: &[String]| texts[dice.below(texts.len())].clone();
+        match target {
+            "scenario" => {
+                let text = any(dice, &self.scenarios);
+                Shot::text(mutation::text(dice, &text, &self.scenarios))
+            }
+            "set" => {
+                let set = any(dice, &self.sets);
+                Shot {
+                    scenario: dice.below(builtin::list().len()),
+                    ..Shot::text(mutation::text(dice, &set, &self.sets))
+                }
+            }
+            "table" => {
+                let text = any(dice, &self.tables);
+                Shot::text(mutation::text(dice, &text, &self.tables))
+            }
+            _ => {
+                let log = &self.logs[dice.below(self.logs.len())];
+                let wounded = if dice.chance(0.6) { logs::rewritten(dice, log) } else { None };
+                Shot { data: wounded.unwrap_or_else(|| mutation::bytes(dice, log)), scenario: 0 }
+            }
+        }
+    }
+
+    /// Whether the input was taken.
+    fn land(&self, target: &str, shot: &Shot) -> Result<bool, String> {
+        match target {
+            "scenario" => Ok(take(parse("fire", &shot.words(), &Overrides::default()).ok())),
+            "set" => {
+                let (name, _) = builtin::list()[shot.scenario];
+                let overrides = Overrides { sets: vec![shot.words()], ..Default::default() };
+                Ok(take(parse(name, builtin::text(name).unwrap_or_default(), &overrides).ok()))
+            }
+            "table" => {
+                fs::write(self.place.join("table.csv"), &shot.data).map_err(|error| error.to_string())?;
+                let scenario = builtin::text("cooling").unwrap_or_default();
+                let is_entry = shot.words().contains("volume_fraction");
+                let key = if is_entry { "hsmc.entry_probability" } else { "impact_parameter" };
+                let set = format!("engine.{key}={{ table = {:?} }}", self.place.join("table.csv"));
+                let overrides = Overrides { sets: vec![set], ..Default::default() };
+                Ok(take(parse_in(&self.place, "cooling", scenario, &overrides).ok()))
+            }
+            _ => self.read(&shot.data),
+        }
+    }
+
+    fn read(&self, data: &[u8]) -> Result<bool, String> {
+        let (log, clean) = (self.place.join("fire.mcap"), self.place.join("clean.mcap"));
+        fs::write(&log, data).map_err(|error| error.to_string())?;
+        let read = read_log(&log).is_ok();
+        let flat = last_state::<glam::DVec2>(&log).is_ok();
+        let deep = last_state::<glam::DVec3>(&log).is_ok();
+        // What was recovered is a log, unless what it was made of is none: no checksum guards the messages then.
+        if recover(&log, &clean).is_ok() {
+            let _ = read_log(&clean);
+        }
+        Ok(read && (flat || deep))
+    }
+}
+
+/// Looks at what a scenario means, too, and takes the first steps of a small one.
+fn take(scenario: Option<AnyScenario>) -> bool {
+    let Some(scenario) = scenario else { return false };
+    let said = check(&scenario).to_string();
+    assert!(!said.contains("NaN"), "check says NaN:\n{said}");
+    match &scenario {
+        AnyScenario::Two(scenario) => begin(scenario),
+        AnyScenario::Three(scenario) => begin(scenario),
+    }
+    true
+}
+
+/// A run may end with an error of its own, never with a panic.
+fn begin<V: Vector>(scenario: &Scenario<V>) {
+    let from_log = matches!(scenario.initial.positions, InitialPositions::Log(_));
+    if scenario.count > 300 || scenario.grid().number_of_cells() > 20_000 || from_log {
+        return;
+    }
+    let Ok(gas) = initial::build(scenario, None) else { return };
+    if scenario.initial.equilibrate > 2.0 {
+        return;
+    }
+    let Ok(mut simulation) = Simulation::start(scenario, gas, &mut NoLaps) else { return };
+    for _ in 0..4 {
+        let horizon = Horizon { collisions: 200, ..Horizon::NONE };
+        if simulation.end_reason().is_some() || simulation.advance(&mut NoLaps, horizon).is_err() {
+            return;
+        }
+    }
+}
+
+/// What is fired.
+#[derive(Default)]
+struct Shot {
+    data: Vec<u8>,
+    /// Which built-in scenario a `--set` changes.
+    scenario: usize,
+}
+
+impl Shot {
+    fn text(text: String) -> Self {
+        Shot { data: text.into_bytes(), scenario: 0 }
+    }
+
+    fn words(&self) -> String {
+        String::from_utf8_lossy(&self.data).into_owned()
+    }
+
+    fn shown(&self) -> String {
+        let text: String = self.words().chars().take(6000).collect();
+        if text.chars().filter(|c| c.is_control() && *c != '\n').count() * 20 > text.len() {
+            return format!("{} bytes", self.data.len());
+        }
+        text
+    }
+}
+
+/// All files of `folder`, in the order of their names.
+fn contents(folder: &Path) -> Result<Vec<Vec<u8>>, String> {
+    let told = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let entries = fs::read_dir(folder).map_err(told)?.collect::<Result<Vec<_>, _>>().map_err(told)?;
+    let mut paths: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+    paths.sort();
+    paths.iter().map(|path| fs::read(path).map_err(told)).collect()
+}
+
+fn texts(folder: &Path) -> Result<Vec<String>, String> {
+    Ok(contents(folder)?.iter().map(|bytes| String::from_utf8_lossy(bytes).into_owned()).collect())
+}
