@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::common::Remarks;
+use super::extent::Remarks;
 use super::model::{Basis, Compared, Comparison, Contestant, Correlation, Cost};
 use super::words::{in_words, rounded};
 use super::{figures, profiles, series};

@@ -3,10 +3,10 @@
 //! How errors and verdicts are made stands in `docs/comparison.md`.
 
 mod assemble;
-mod common;
 pub mod csv;
 mod difference;
 mod errors;
+mod extent;
 mod figures;
 mod interpolate;
 pub mod json;

@@ -1,7 +1,7 @@
 //! Profiles of all contestants, at the times of the reference.
 
 use super::assemble::{Entry, Replica};
-use super::common::{Remarks, say, say_where_it_ends, without_short};
+use super::extent::{Remarks, say, say_where_it_ends, without_short};
 use super::interpolate::{Path, Sampled};
 use super::model::Compared;
 use super::series::{Form, compare};

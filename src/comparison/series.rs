@@ -1,9 +1,9 @@
 //! Series of all contestants at common places.
 
 use super::assemble::Entry;
-use super::common::{Remarks, level, say_where_it_ends, without_short};
 use super::difference::difference;
 use super::errors::{Along, Drawn, Terms, curve};
+use super::extent::{Remarks, level, say_where_it_ends, without_short};
 use super::interpolate::{Path, Sampled};
 use super::model::Compared;
 use super::words::{Subject, in_words};
@@ -159,20 +159,15 @@ pub(super) fn compare(
     if form.is_series && curves.iter().any(|runs| runs.len() > 1) {
         places = thinned(&places);
     }
-    let all = || curves.iter().flatten().map(|(_, curve)| curve);
-    let is_relative = form.is_series
-        && all().all(Sampled::is_positive)
-        && (form.is_energy || all().any(|curve| curve.span() > SPAN));
+    let is_relative = form.is_relative(curves);
     let path = if is_relative { Path::Logarithmic } else { Path::Straight };
     let drawn: Vec<Vec<Drawn>> = curves.iter().map(|runs| drawn_at(runs, &places, path)).collect();
-    let collisions = entries[leading].runs.iter().find(|run| run.number == *number);
-    let collisions = collisions.map(|run| sampled(&run.log, TIME, COLLISIONS)).unwrap_or_default();
-    let of_reference: Vec<Vec<f64>> = drawn[leading].iter().map(|one| one.values.clone()).collect();
+    let collisions = collisions(&entries[leading], *number);
     let along = Along {
         places: &places,
         abscissa: &form.abscissa.name,
         clock: form.is_series.then(|| clock(&form.abscissa.name, &places, &collisions)),
-        level: if is_relative { vec![1.0; places.len()] } else { level(&of_reference, places.len()) },
+        level: if is_relative { vec![1.0; places.len()] } else { level(&drawn[leading], places.len()) },
     };
     let terms = if is_relative { Terms::Logarithms } else { Terms::Own };
     let is_cooling = form.is_energy && is_relative && pattern.falls_below(COOLED);
@@ -188,9 +183,9 @@ pub(super) fn compare(
         let other = (place != reference).then_some(&drawn[reference])?;
         difference(own, other, &along, terms, &subject)
     });
-    let differences = differences.collect();
     let curves = drawn.iter().map(|own| (!own.is_empty()).then(|| curve(own, places.len()))).collect();
     Some(Compared {
+        differences: differences.collect(),
         theory: Vec::new(),
         name: form.name.to_owned(),
         abscissa: form.abscissa,
@@ -198,11 +193,23 @@ pub(super) fn compare(
         time: form.time,
         places,
         curves,
-        differences,
     })
 }
 
+/// Collisions per particle over time in run `number`.
+fn collisions(entry: &Entry, number: u32) -> Sampled {
+    let run = entry.runs.iter().find(|run| run.number == number);
+    run.map(|run| sampled(&run.log, TIME, COLLISIONS)).unwrap_or_default()
+}
+
 impl Form<'_> {
+    /// Whether `curves` are compared by their logarithms.
+    fn is_relative(&self, curves: &[Vec<(u32, Sampled)>]) -> bool {
+        let all = || curves.iter().flatten().map(|(_, curve)| curve);
+        let is_positive = self.is_series && all().all(Sampled::is_positive);
+        is_positive && (self.is_energy || all().any(|curve| curve.span() > SPAN))
+    }
+
     /// The quantity in words.
     fn quantity(&self) -> String {
         match self.name == self.ordinate.name {

@@ -130,13 +130,12 @@ impl<'a, V: Vector> Theory<'a, V> {
                 curve(name, self.cooling_source(&law, is_in_time), &|place| energies * temperature(place))
             }
             "collisions_per_particle" if is_in_time => {
-                let source = self.cooling_source(&law, true);
+                let source = format!("where T falls as {}", self.cooling_source(&law, true));
                 curve("(2/γ) ln(1 + t/t₀)", source, &|time| law.collisions_until(time))
             }
             "collision_frequency" if is_in_time => {
-                curve("Enskog, cooling by Haff’s law", self.cooling_source(&law, true), &|time| {
-                    law.collision_frequency(time)
-                })
+                let source = format!("where T falls as {}", self.cooling_source(&law, true));
+                curve("Enskog, cooling by Haff’s law", source, &|time| law.collision_frequency(time))
             }
             _ => None,
         }

@@ -71,14 +71,14 @@ fn noisy(seed: u64, replicas: usize, shift: f64) -> Comparison {
 
 #[test]
 fn a_shift_is_found_with_its_size_and_the_place_where_curves_part() {
-    // Four replicas: error √(2/4) = 0.71, known from neighbours too, with some thirty degrees of freedom; the shift is 14
+    // Four replicas: error √(2/4) = 0.71, known from neighbours too, with some thirty degrees of freedom; the shift is 11
     // errors. With the three degrees of freedom of each place alone the limit would be 25.
-    let comparison = noisy(7, 4, 10.0);
+    let comparison = noisy(7, 4, 8.0);
     let (compared, difference) = found(&comparison, "stress", "time");
     assert_eq!(difference.verdict, Verdict::Differs);
     assert_eq!(difference.parts_at, Some(10.0));
     assert!(!difference.is_relative);
-    let share: f64 = (10..40).map(|k| (difference.values[k] - 10.0) / 30.0).sum();
+    let share: f64 = (10..40).map(|k| (difference.values[k] - 8.0) / 30.0).sum();
     assert!(share.abs() < 4.0 * f64::sqrt(2.0 / 4.0 / 30.0), "{share}");
     assert!(difference.most.unwrap().standard_errors > difference.threshold);
     assert!((4.0..6.0).contains(&difference.threshold), "{}", difference.threshold);

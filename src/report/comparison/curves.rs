@@ -137,8 +137,9 @@ fn differences(comparison: &Comparison, compared: &Compared, x_scale: Scale) -> 
         .collect();
     let is_relative = known.first()?.1.is_relative;
     let range = range(known.iter().map(|(_, difference)| *difference));
-    let ends = [compared.places.first()?, compared.places.last()?];
-    let zero = Curve::new("", ends.map(|x| [*x, 0.0]).to_vec(), Stroke::Dashed, Ink::Text);
+    // At every place: an axis of decades has no room for the first, at time 0.
+    let zero = over_places(compared, &vec![0.0; compared.places.len()]);
+    let zero = Curve::new("", zero, Stroke::Dashed, Ink::Text);
     let mut curves = vec![zero];
     for (place, difference) in known {
         let (stroke, ink) = look(comparison, place);

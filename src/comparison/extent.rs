@@ -1,6 +1,7 @@
 //! What runs have in common: those that end long before the others of their contestant are left out, and it is said.
 
 use super::assemble::{Entry, Replica};
+use super::errors::Drawn;
 use super::words::rounded;
 use crate::statistics::mean;
 
@@ -77,9 +78,9 @@ pub(super) fn say_where_it_ends(what: &str, [first, end]: [f64; 2], whole: [f64;
 }
 
 /// A smoothed size of a quantity: the mean of the values at each place that are known.
-pub(super) fn level(curves: &[Vec<f64>], places: usize) -> Vec<f64> {
+pub(super) fn level(curves: &[Drawn], places: usize) -> Vec<f64> {
     let at = |k: usize| -> Vec<f64> {
-        curves.iter().map(|values| values[k]).filter(|value| value.is_finite()).collect()
+        curves.iter().map(|drawn| drawn.values[k]).filter(|value| value.is_finite()).collect()
     };
     (0..places).map(|k| mean(&at(k)).unwrap_or(f64::NAN).abs()).collect()
 }
