@@ -223,7 +223,8 @@ impl Progress {
         let topic = self.topics.get(&header.channel_id);
         let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
         let next = self.places.entry(header.channel_id).or_insert(0);
-        if let Some(missing) = missing(topic, *next, header.sequence)? {
+        let is_counted = schema::topic::COUNTED.contains(&topic.as_str());
+        if let Some(missing) = missing(topic, *next, header.sequence)?.filter(|_| is_counted) {
             if !self.recovered {
                 return Err(Fault::Missing(topic.clone(), missing));
             }
