@@ -72,7 +72,8 @@ const EXAMPLES: &str = "Examples:
   grainflow scenarios show pipe > mine.toml      a file to start from
   grainflow check mine.toml                      what it means, or all that is wrong with it
 
-Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 3 a verification did not hold; 130 interrupted.";
+Exit codes: 0 done; 1 the run failed; 2 the input is wrong; 3 not verified;
+130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

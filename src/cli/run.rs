@@ -30,7 +30,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
 
-    /// Go on from the last complete state of a log; SCENARIO is the log or its run folder
+    /// Go on from the last complete state of the log, or run folder, in place of SCENARIO
     #[arg(long)]
     resume: bool,
 

@@ -88,7 +88,7 @@ struct Count {
 impl Count {
     fn note(&mut self, topic: &str, header: &MessageHeader, time_scale: f64, recovery: &mut Recovery) {
         let (count, next) = self.seen.entry(header.channel_id).or_default();
-        if header.sequence > *next {
+        if header.sequence > *next && schema::topic::COUNTED.contains(&topic) {
             *recovery.lost.entry(topic.to_owned()).or_default() += u64::from(header.sequence - *next);
             recovery.whole_until = recovery.whole_until.or(Some(recovery.end.unwrap_or(0.0)));
         }

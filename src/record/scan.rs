@@ -232,9 +232,8 @@ impl Progress {
         let topic = self.topics.get(&header.channel_id);
         let topic = topic.ok_or_else(|| Fault::damage("a message lacks its channel"))?;
         let next = self.places.entry(header.channel_id).or_insert(0);
-        // Of frames and fields not every recording has one: they are counted as the recordings are.
-        let may_skip = topic == schema::topic::PARTICLES || topic.starts_with(schema::topic::FIELDS);
-        if let Some(missing) = missing(topic, *next, header.sequence)?.filter(|_| !may_skip) {
+        let is_counted = schema::topic::COUNTED.contains(&topic.as_str());
+        if let Some(missing) = missing(topic, *next, header.sequence)?.filter(|_| is_counted) {
             if !self.recovered {
                 return Err(Fault::Missing(topic.clone(), missing));
             }

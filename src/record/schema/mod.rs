@@ -44,6 +44,10 @@ pub(crate) mod topic {
     pub(crate) const PROFILES: &str = "/profiles";
     pub(crate) const STATE: &str = "/state";
     pub(crate) const WALLS: &str = "/walls";
+
+    /// Where messages are numbered one after the other: a number that is missing is a message that is missing. What
+    /// belongs to a recording has the number of that.
+    pub(crate) const COUNTED: [&str; 3] = [MEASURES, PROFILES, STATE];
 }
 
 /// A message that is described in the file.
