@@ -20,7 +20,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Something could not be written; what was flushed before is kept.
-    #[error("cannot write to the log {}: {source}; what was recorded before stands in the file", path.display())]
+    #[error("cannot write to the log {}: {}; what was recorded before stands in the file", path.display(), reason(source))]
     Write {
         /// The log.
         path: PathBuf,
@@ -117,6 +117,14 @@ pub enum LogError {
         /// D that was asked for.
         wanted: usize,
     },
+}
+
+/// What the system says, where the writer only says that it said something.
+fn reason(error: &mcap::McapError) -> String {
+    match error {
+        mcap::McapError::Io(source) => source.to_string(),
+        other => other.to_string(),
+    }
 }
 
 impl LogError {
