@@ -331,7 +331,7 @@ mod tests {
         assert!(!often.contains("TB"), "{often}");
         let all = ["record.points=all", "record.frames=4000", "particles.count=100000"];
         let large = warned("clustering", &all);
-        assert!(large.contains("record.frames asks for 4001 recordings of about 1000 steps"), "{large}");
+        assert!(large.contains("record.frames asks for 4001 recordings of about 527 steps"), "{large}");
         let large = warned("clustering", &["record.points=all", "record.frames=4000", "run={steps=5000}"]);
         assert!(large.contains("the log takes about 11"), "{large}");
     }
@@ -352,7 +352,7 @@ mod tests {
         let dilute = ["particles.volume_fraction=0.002", "engine.cell_size=5"];
         let said = warned("cooling", &dilute);
         assert!(said.contains("the step is capped throughout") && said.contains("crossing = 0.5"), "{said}");
-        assert_eq!(warned("cooling", &["engine.time_step={crossing=0.5}"]), "");
+        assert!(!warned("cooling", &["engine.time_step={crossing=0.5}"]).contains("capped"));
         assert!(
             !warned("cooling", &[&dilute[..], &["engine.kind=event-driven"]].concat()).contains("capped")
         );

@@ -71,7 +71,6 @@ fn what_is_wrong_has_its_exit_code() {
     fs::write(place.path("chunk.mcap"), without_chunk(&bytes, 3)).unwrap();
     refused(&["replay", "chunk.mcap", "--verify"], 2, "is not whole");
     refused(&["replay", "none.mcap", "--verify"], 2, "cannot read the log none.mcap");
-    refused(&["replay", "run"], 2, "--verify");
     refused(&["run", "--resume", "run", "--seed", "3"], 2, "--seed: a run that goes on keeps its scenario");
     refused(&["run", "--resume", "run", "--engine", "cba"], 2, "--engine: a run that goes on");
     refused(&["run", "--resume", "run", "--set", "gravity=[0,1]"], 2, "only run.* and record.* may change");
