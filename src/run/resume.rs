@@ -176,17 +176,19 @@ impl Resumption {
 
     /// A changed end has to come after the state.
     fn check_end(&self) -> Result<(), ResumeError> {
-        let changes_end = self.changes.split("; ").any(|set| set.trim_start().starts_with("run"));
+        if !self.changes.split("; ").any(|set| set.trim_start().starts_with("run")) {
+            return Ok(());
+        }
         let reached = match (&self.scenario, &self.state) {
             (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => end_reason(scenario, state),
             (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => end_reason(scenario, state),
             _ => None,
         };
         match reached {
-            Some((limit, time, collisions)) if changes_end => {
+            Some((limit, time, collisions)) => {
                 Err(ResumeError::Past { path: self.log.clone(), limit, time, collisions })
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 }
@@ -235,6 +237,31 @@ struct From<'a> {
 }
 
 impl From<'_> {
+    /// The parts of the run that end at `state` at the latest. A log that was killed while it was copied may not have come to
+    /// where its last part begins.
+    fn parts_before<V: Vector>(&self, state: &SavedState<'_, V>) -> Vec<EarlierPart> {
+        let (steps, events) = (state.totals.steps, state.totals.events.all);
+        let is_over =
+            |part: &EarlierPart| part.time <= state.time && part.steps <= steps && part.events <= events;
+        let History { earlier, scenario, .. } = self.history;
+        let over = earlier.iter().position(|part| !is_over(part)).unwrap_or(earlier.len());
+        let (over, open) = earlier.split_at(over);
+        let mut changes: Vec<&str> = open.iter().map(|part| part.changes.as_str()).collect();
+        changes.extend((!self.changes.is_empty()).then_some(self.changes.as_str()));
+        let mut parts = over.to_vec();
+        if !changes.is_empty() {
+            let scenario = open.first().map_or(scenario, |part| &part.scenario).clone();
+            parts.push(EarlierPart {
+                scenario,
+                time: state.time,
+                steps,
+                events,
+                changes: changes.join("; "),
+            });
+        }
+        parts
+    }
+
     fn resume<'s, V: Vector>(
         self,
         scenario: &'s Scenario<V>,
@@ -242,17 +269,8 @@ impl From<'_> {
         folder: RunFolder,
     ) -> Result<Run<'s, V>, RunError> {
         let watch = Stopwatch::default();
-        let mut earlier = self.history.earlier.clone();
-        let changed = !self.changes.is_empty();
-        if changed {
-            earlier.push(EarlierPart {
-                scenario: self.history.scenario.clone(),
-                time: state.time,
-                steps: state.totals.steps,
-                events: state.totals.events.all,
-                changes: self.changes,
-            });
-        }
+        let earlier = self.parts_before(&state);
+        let changed = earlier != self.history.earlier;
         let begins_log = state.recordings == 0;
         let (mut simulation, timetable) = go_on_with(scenario, state, changed);
         let origin = Origin {

@@ -29,8 +29,15 @@ fn a_later_end_leads_to_the_state_of_the_longer_run() {
         assert_eq!(history.earlier.len(), 1);
         assert_eq!(history.earlier[0].changes, "run.collisions_per_particle=9");
         assert_eq!(history.earlier[0].scenario, before.scenario);
-        // And once more, from a log that was killed after that.
+        // From a log that was killed while the old one was copied to it.
         let bytes = log_bytes(&further);
+        let early = place.path("early.mcap");
+        fs::write(&early, &bytes[..bytes.len() * 35 / 100]).unwrap();
+        let early = resume(&early, &[], &place.path("early"));
+        assert!(early.summary["resumed_at"].as_f64() < short.summary["simulated_time"].as_f64());
+        assert_eq!(early.summary["state_hash"], long.summary["state_hash"], "{engine}");
+        verified(&early.folder);
+        // And once more, from one that was killed after that.
         let killed = place.path("killed.mcap");
         fs::write(&killed, &bytes[..bytes.len() * 9 / 10]).unwrap();
         let again = resume(&killed, &[], &place.path("again"));
