@@ -30,7 +30,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
 
-    /// Go on from the last complete state of the log, or run folder, in place of SCENARIO
+    /// Go on from the last state of the log, or run folder, given as SCENARIO
     #[arg(long)]
     resume: bool,
 

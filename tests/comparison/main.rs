@@ -56,13 +56,13 @@ fn found<'a>(comparison: &'a Comparison, name: &str, abscissa: &str) -> (&'a Com
     (compared, compared.differences[1].as_ref().unwrap())
 }
 
-/// Two engines, each `replicas` times, whose stresses are noise about 5; that of the second is `shift` higher from
+/// Two engines, each `replicas` times, whose stresses are noise about 50; that of the second is `shift` higher from
 /// time 10 on.
 fn noisy(seed: u64, replicas: usize, shift: f64) -> Comparison {
     let mut random = random(seed);
     let mut logs = |shift: f64| -> Vec<RunLog> {
         let mut one =
-            || log(&even(40), |t| [1.0, t, 5.0 + random.gaussian() + if t >= 10.0 { shift } else { 0.0 }]);
+            || log(&even(40), |t| [1.0, t, 50.0 + random.gaussian() + if t >= 10.0 { shift } else { 0.0 }]);
         (0..replicas).map(|_| one()).collect()
     };
     let entries = vec![entry("event-driven", logs(0.0)), entry("hsmc", logs(shift))];

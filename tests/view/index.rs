@@ -137,10 +137,9 @@ fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
         }
         let picture = frame(time, &columns, None);
         let row = [time, random(), time];
-        let hash = format!("{index:064x}");
         log.recording(&Recording {
             values: &row,
-            state_hash: &hash,
+            state_hash: &format!("{index:064x}"),
             grains: picture.grains,
             profiles: &[],
             frame: Some(&picture),
