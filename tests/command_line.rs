@@ -410,9 +410,7 @@ fn help_tells_what_works_and_nothing_else() {
         let output = place.grainflow(&arguments);
         assert_eq!((code(&output), error(&output)), (0, String::new()));
         let said = text(&output);
-        for word in ["validate"] {
-            assert!(!said.contains(word), "{arguments:?} speaks of {word}, which does not work yet");
-        }
+        assert!(!said.contains("validate"), "{arguments:?} speaks of what does not work yet");
         assert!(said.lines().all(|line| line.chars().count() <= 100), "{said}");
     }
     let run = text(&place.grainflow(&["run", "--help"]));
