@@ -203,7 +203,7 @@ fn an_option_is_checked_like_a_file() {
     for (key, value) in [("mass", "-1"), ("restitution", "inf"), ("count", "1.5"), ("diameter", "true")] {
         let mut lines: Vec<String> = shear.lines().map(str::to_owned).collect();
         lines.retain(|line| {
-            !line.starts_with(&format!("{key} =")) && !(key == "count" && line.starts_with("volume_f"))
+            !(line.starts_with(&format!("{key} =")) || key == "count" && line.starts_with("volume_f"))
         });
         let particles = lines.iter().position(|line| line == "[particles]").unwrap();
         lines.insert(particles + 1, format!("{key} = {value}"));
