@@ -34,12 +34,12 @@ pub(super) fn write(
             "{} {} {} {} {:?}",
             moment.ids[row],
             u32::from(moment.species[row]) + 1,
-            moment.text(moment.positions[row], " "),
-            moment.text(moment.velocities[row], " "),
+            moment.vector_text(moment.positions[row], " "),
+            moment.vector_text(moment.velocities[row], " "),
             moment.radii[row]
         )?;
         match &moment.spins {
-            Some(spins) => writeln!(to, " {}", moment.text(spins[row], " "))?,
+            Some(spins) => writeln!(to, " {}", moment.vector_text(spins[row], " "))?,
             None => writeln!(to)?,
         }
     }

@@ -1,7 +1,5 @@
 //! The grains at one time, as every format writes them.
 
-use std::fmt;
-
 use crate::record::contents::Frame;
 use crate::record::state::SavedState;
 use crate::replay::kinds::Kinds;
@@ -99,36 +97,19 @@ impl Moment {
         (self.ids.len() as u64) < self.grains
     }
 
-    /// `vector` with `separator` in between, in the shortest form that reads back to the same bits at the precision of this moment.
-    pub(super) fn text<'a>(&self, vector: [f64; 3], separator: &'a str) -> Text<'a> {
-        Text { vector, separator, is_single: self.is_single }
+    /// `value` in the shortest form that reads back to the same bits at the precision of this moment.
+    pub(super) fn text(&self, value: f64) -> String {
+        if self.is_single { format!("{:?}", value as f32) } else { format!("{value:?}") }
+    }
+
+    /// `vector` in that form, with `separator` in between.
+    pub(super) fn vector_text(&self, vector: [f64; 3], separator: &str) -> String {
+        vector.map(|component| self.text(component)).join(separator)
     }
 
     /// What is to be said of a moment that is not all of the gas, or nothing.
     pub(super) fn remark(&self) -> Option<String> {
         self.is_thinned().then(|| format!("thinned: {} of {} grains", self.len(), self.grains))
-    }
-}
-
-/// A vector to be written.
-pub(super) struct Text<'a> {
-    vector: [f64; 3],
-    separator: &'a str,
-    is_single: bool,
-}
-
-impl fmt::Display for Text<'_> {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (axis, &component) in self.vector.iter().enumerate() {
-            if axis > 0 {
-                to.write_str(self.separator)?;
-            }
-            match self.is_single {
-                true => write!(to, "{:?}", component as f32)?,
-                false => write!(to, "{component:?}")?,
-            }
-        }
-        Ok(())
     }
 }
 

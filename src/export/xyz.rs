@@ -31,12 +31,12 @@ pub(super) fn write(to: &mut dyn Write, moment: &Moment, volume: &Volume) -> io:
             "{} {} {} {} {:?}",
             name(moment.species[row]),
             moment.ids[row],
-            moment.text(moment.positions[row], " "),
-            moment.text(moment.velocities[row], " "),
+            moment.vector_text(moment.positions[row], " "),
+            moment.vector_text(moment.velocities[row], " "),
             moment.radii[row]
         )?;
         match &moment.spins {
-            Some(spins) => writeln!(to, " {}", moment.text(spins[row], " "))?,
+            Some(spins) => writeln!(to, " {}", moment.vector_text(spins[row], " "))?,
             None => writeln!(to)?,
         }
     }
