@@ -18,7 +18,10 @@ SOFTWARE_WEBGL = ["--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"]
 # Pixels of the grains of pane N that are not transparent, and a checksum of all of them.
 GRAINS = """
-const canvas = document.querySelectorAll('.stage .grains')[arguments[0]];
+const pane = arguments[0];
+// What was asked for is drawn with the next picture.
+return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))).then(() => {
+const canvas = document.querySelectorAll('.stage .grains')[pane];
 const copy = document.createElement('canvas');
 copy.width = canvas.width;
 copy.height = canvas.height;
@@ -31,6 +34,7 @@ for (let k = 0; k < pixels.length; k += 4) {
   sum = (sum * 31 + pixels[k] + 3 * pixels[k + 1] + 7 * pixels[k + 2]) % 1000000007;
 }
 return { drawn, sum };
+});
 """
 PLOTS = "return [...document.querySelectorAll('.plot canvas')].map((canvas) => [canvas.getAttribute('aria-label'), canvas.toDataURL()].join())"
 MOMENTS = "return [...document.querySelectorAll('.state > span')].map((span) => span.textContent)"
