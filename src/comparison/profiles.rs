@@ -14,6 +14,8 @@ const SAME: f64 = 1e-9;
 
 /// The column in which profiles state the errors of the one before it.
 const STANDARD_ERROR: &str = "standard_error";
+/// The column in which velocity distributions state what theory says of all of them.
+const MAXWELL: &str = "maxwell";
 
 /// What a run has recorded of one profile, in the course of time.
 type Recordings<'a> = Vec<&'a Profile>;
@@ -57,7 +59,8 @@ fn of_name(entries: &[Entry], reference: usize, name: &str, remarks: &mut Remark
     let mut found = Vec::new();
     for time in times {
         // What one run knows of its own errors is no quantity to be compared.
-        for column in (1..pattern.columns.len()).filter(|c| pattern.columns[*c].name != STANDARD_ERROR) {
+        let is_measured = |c: &usize| ![STANDARD_ERROR, MAXWELL].contains(&pattern.columns[*c].name.as_str());
+        for column in (1..pattern.columns.len()).filter(is_measured) {
             let at = |recordings: &Recordings<'_>| sampled(recordings, pattern, column, time);
             let of_runs = |runs: &Vec<(u32, Recordings<'_>)>| -> Vec<(u32, Sampled)> {
                 let curves = runs.iter().map(|(number, recordings)| (*number, at(recordings)));

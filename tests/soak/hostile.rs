@@ -77,7 +77,7 @@ impl Range {
         let problem = match result {
             Err(problem) => problem,
             Ok(_) if seconds > PATIENCE => format!("took {seconds:.1} s"),
-            Ok(_) if seed % 256 == 0 && peak_memory_bytes().is_some_and(|peak| peak > MEMORY) => {
+            Ok(_) if seed.is_multiple_of(256) && peak_memory_bytes().is_some_and(|peak| peak > MEMORY) => {
                 "the program has come to hold more than 2 GB".to_owned()
             }
             Ok(_) => return Ok(()),

@@ -17,9 +17,9 @@ use crate::observe::measure::{Column, Dimension};
 /// The whole page.
 pub(super) fn page(comparison: &Comparison) -> String {
     let mut body = summit::html(comparison);
+    body.push_str(&section("The same moments", &gallery::html(comparison)));
     body.push_str(&section("Where they agree", &verdicts::html(comparison)));
     body.push_str(&section("What they cost", &costs::html(comparison)));
-    body.push_str(&section("The same moments", &gallery::html(comparison)));
     body.push_str(&section("In the course of time", &curves::series(comparison)));
     body.push_str(&section("Profiles, spectra, distributions", &curves::profiles(comparison)));
     body.push_str(&section("Figures", &figures::html(comparison)));
