@@ -28,7 +28,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
 
-    /// Go on from the last complete state of the log, or run folder, in place of SCENARIO
+    /// SCENARIO is a log or a run folder: go on from its last complete state
     #[arg(long)]
     resume: bool,
 
