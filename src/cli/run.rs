@@ -30,7 +30,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     input: ScenarioInput,
 
-    /// Go on from the last state of the log, or run folder, given as SCENARIO
+    /// SCENARIO is a log or a run folder: go on from its last complete state
     #[arg(long)]
     resume: bool,
 

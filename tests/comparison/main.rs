@@ -76,7 +76,7 @@ fn a_shift_is_found_with_its_size_and_the_place_where_curves_part() {
     let comparison = noisy(7, 4, 8.0);
     let (compared, difference) = found(&comparison, "stress", "time");
     assert_eq!(difference.verdict, Verdict::Differs);
-    assert_eq!(difference.parts_at, Some(10.0));
+    assert_eq!(difference.parts_at, Some(10.0), "{difference:?}");
     assert!(!difference.is_relative);
     let share: f64 = (10..40).map(|k| (difference.values[k] - 8.0) / 30.0).sum();
     assert!(share.abs() < 4.0 * f64::sqrt(2.0 / 4.0 / 30.0), "{share}");

@@ -13,7 +13,7 @@ use crate::run::verify::{Extent, Verdict, VerifyError, verify};
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Proof")]
 pub(super) struct VerifyOptions {
-    /// Run the scenario again and compare every recording and state bit for bit; exit code 3 where one differs
+    /// Run the scenario again and compare everything bit for bit; exit code 3 where it differs
     #[arg(long, conflicts_with_all = ["from", "to", "every", "measures", "source", "series", "profiles", "frames", "report", "speed", "force"])]
     pub(super) verify: bool,
 
