@@ -14,7 +14,7 @@ pub enum LogError {
         source: std::io::Error,
     },
     /// Something could not be written; what was flushed before is kept.
-    #[error("cannot write to the log {}: {source}; what was recorded before stands in the file", path.display())]
+    #[error("cannot write to the log {}: {}; what was recorded before stands in the file", path.display(), root(source))]
     Write {
         /// The log.
         path: PathBuf,
@@ -91,6 +91,15 @@ pub enum LogError {
         /// D that was asked for.
         wanted: usize,
     },
+}
+
+/// What the system said: the last of the reasons that stand one behind the other.
+fn root(error: &dyn std::error::Error) -> &dyn std::error::Error {
+    let mut root = error;
+    while let Some(reason) = root.source() {
+        root = reason;
+    }
+    root
 }
 
 impl LogError {
