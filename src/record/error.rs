@@ -20,7 +20,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Something could not be written; what was flushed before is kept.
-    #[error("cannot write to the log {}: {}; what was recorded before stands in the file", path.display(), reason(source))]
+    #[error("cannot write to the log {}: {}; what was recorded before stands in the file", path.display(), root(source))]
     Write {
         /// The log.
         path: PathBuf,
@@ -119,12 +119,13 @@ pub enum LogError {
     },
 }
 
-/// What the system says, where the writer only says that it said something.
-fn reason(error: &mcap::McapError) -> String {
-    match error {
-        mcap::McapError::Io(source) => source.to_string(),
-        other => other.to_string(),
+/// What the system said: the last of the reasons that stand one behind the other.
+fn root(error: &dyn std::error::Error) -> &dyn std::error::Error {
+    let mut root = error;
+    while let Some(reason) = root.source() {
+        root = reason;
     }
+    root
 }
 
 impl LogError {

@@ -113,7 +113,11 @@ fn keeps_momentum<V: Vector>(scenario: &Scenario<V>, axis: usize) -> bool {
             Face::Wall(wall) => matches!(wall.kind, WallKind::Smooth | WallKind::Vibrating { .. }),
         }),
     };
+    // A cure that turns velocities turns them at walls, too.
+    let turned =
+        scenario.engine.kind.is_event_driven() && scenario.engine.event_driven.cure.rotation.is_some();
     scenario.source.is_none()
+        && (!turned || scenario.boundary.is_fully_periodic())
         && scenario.gravity[axis] == 0.0
         && scenario.boundary.is_periodic(axis)
         && (0..V::DIMENSION).all(slides)
