@@ -8,6 +8,7 @@ use super::errors::{Along, Drawn, Missing, Terms, as_stated};
 use super::judge::judged;
 use super::memory::longest_memory;
 use super::model::{ComparedFigure, Difference};
+use super::series::needed;
 use super::words::{Subject, in_words};
 use crate::observe::measure::Dimension;
 use crate::statistics::{BLOCKS, Estimate, average, mean};
@@ -44,7 +45,7 @@ fn number(run: &Replica, key: &str) -> Option<f64> {
 
 fn figure(entries: &[Entry], reference: usize, dimension: usize, name: &str) -> Option<ComparedFigure> {
     let values: Vec<Option<Estimate>> = entries.iter().map(|entry| estimate(entry, name)).collect();
-    if values.iter().flatten().count() < 2 {
+    if values.iter().flatten().count() < needed(name) {
         return None;
     }
     let differences = entries.iter().enumerate().map(|(place, entry)| {

@@ -134,7 +134,13 @@ fn recorded(places: &[f64], curves: &[Vec<(u32, Sampled)>]) -> Vec<f64> {
     kept
 }
 
-/// Curves at the places of the reference, or of the first that has any; `None` unless two have some.
+/// Contestants that have to have a quantity so that it is shown. Impact parameters are only counted by exact dynamics; those
+/// that the others draw are what theory says beside them.
+pub(super) fn needed(name: &str) -> usize {
+    if name.starts_with("impact") { 1 } else { 2 }
+}
+
+/// Curves at the places of the reference, or of the first that has any; `None` unless enough have some.
 pub(super) fn compare(
     entries: &[Entry],
     reference: usize,
@@ -142,7 +148,7 @@ pub(super) fn compare(
     form: Form<'_>,
     remarks: &mut Remarks,
 ) -> Option<Compared> {
-    if curves.iter().filter(|runs| !runs.is_empty()).count() < 2 {
+    if curves.iter().filter(|runs| !runs.is_empty()).count() < needed(form.name) {
         return None;
     }
     let leading = [reference].into_iter().chain(0..curves.len()).find(|place| !curves[*place].is_empty())?;
