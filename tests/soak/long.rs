@@ -103,7 +103,7 @@ impl Long {
             seconds: since.elapsed().as_secs_f64(),
             drift: drift / beginning.momentum_scale.max(f64::MIN_POSITIVE),
             energy_change: moments::kinetic_energy(simulation.gas()) / start - 1.0,
-            growth: peak_memory_bytes().unwrap_or(0) - memory,
+            growth: peak_memory_bytes().unwrap_or(0).saturating_sub(memory),
             slower: best(first) / best(second),
         };
         report.judged(simulation.scenario().boundary.is_fully_periodic())
