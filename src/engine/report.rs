@@ -3,7 +3,7 @@
 use crate::space::Vector;
 
 /// What one step did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport<V> {
     /// Steps made: 1, or 0 for engines without steps.
     pub steps: u64,
@@ -15,6 +15,8 @@ pub struct StepReport<V> {
     pub counts: Counts<V>,
     /// What events there were, where the engine has events.
     pub events: EventCounts,
+    /// Collisions in the step up to the departure of each grain that left, of engines without steps; empty for others.
+    pub removals: Vec<u64>,
 }
 
 /// Bins of the histogram of impact parameters, over 0 ≤ |b|/d ≤ 1.
@@ -144,13 +146,26 @@ impl<V: Vector> Totals<V> {
         self.steps_capped += u64::from(report.capped);
         self.particle_steps += report.steps * grains as u64;
         if report.steps == 0 {
-            self.since = self.since_change(grains);
-            self.collisions_per_particle = self.per_particle_after(report.counts.collisions, grains);
+            self.count_per_particle(report, grains);
         } else if grains > 0 {
             self.collisions_per_particle += 2.0 * report.counts.collisions as f64 / grains as f64;
         }
         self.counts.add(&report.counts);
         self.events.add(&report.events);
+    }
+
+    /// Counts collisions per particle up to the departure of each grain, then up to the end of what `report` tells.
+    fn count_per_particle(&mut self, report: &StepReport<V>, grains: usize) {
+        let before = self.counts.collisions;
+        let places = report.removals.iter().chain([&report.counts.collisions]);
+        for (left, collisions) in places.enumerate() {
+            let further = before + collisions - self.counts.collisions;
+            self.since = self.since_change(grains - left);
+            self.collisions_per_particle = self.per_particle_after(further, grains - left);
+            self.counts.collisions += further;
+        }
+        // They are counted with everything else.
+        self.counts.collisions = before;
     }
 
     /// From where collisions of a gas of `grains` grains count: from now on, if their number is new.
@@ -216,6 +231,22 @@ mod tests {
         }
         assert_eq!(whole, cut);
         assert!((whole.collisions_per_particle - (2000.0 / 7.0 + 600.0 / 11.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn grains_that_leave_are_not_counted_from_then_on() {
+        let (mut whole, mut cut) = (Totals::default(), Totals::default());
+        whole.add(&StepReport { removals: vec![40, 40, 70], ..collided(100) }, 9);
+        let leaves =
+            |collisions, left: usize| StepReport { removals: vec![collisions; left], ..collided(collisions) };
+        cut.add(&collided(10), 9);
+        cut.add(&leaves(30, 2), 9);
+        cut.add(&collided(5), 7);
+        cut.add(&leaves(25, 1), 7);
+        cut.add(&collided(30), 6);
+        assert_eq!(whole, cut);
+        let expected = 2.0 * (40.0 / 9.0 + 30.0 / 7.0 + 30.0 / 6.0);
+        assert!((whole.collisions_per_particle - expected).abs() < 1e-12);
     }
 
     #[test]

@@ -247,6 +247,7 @@ impl<V: Vector> World<V> {
         body.collisions = body.collisions.wrapping_add(1);
         self.plans[row as usize] = Plan { event: Event::Gone, ..Plan::default() };
         self.counts.removed += 1;
+        self.removals.push(self.counts.collisions);
         self.pace.gone += 1;
     }
 

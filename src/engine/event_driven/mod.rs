@@ -26,7 +26,7 @@ mod world;
 mod year;
 
 use crate::engine::cell_counts::CellCount;
-use crate::engine::report::StepReport;
+use crate::engine::report::{Counts, StepReport};
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
@@ -75,7 +75,11 @@ impl<V: Vector> World<V> {
     /// tells whether its time was reached.
     fn run(&mut self, horizon: Horizon, most: u64) -> Result<bool, EngineError> {
         let mut end = self.since_origin(horizon.time);
-        while self.counts.collisions < horizon.collisions && self.events.all < most {
+        // Who waits for a number of collisions per particle has to know when their number changes.
+        let most_gone = if horizon.collisions == u64::MAX { u64::MAX } else { 1 };
+        let is_inside =
+            |counts: &Counts<V>| counts.collisions < horizon.collisions && counts.removed < most_gone;
+        while is_inside(&self.counts) && self.events.all < most {
             let Some(next) = self.calendar.next(&self.plans) else {
                 if end < self.calendar.year() || self.is_at_rest() {
                     return if end.is_finite() { Ok(true) } else { Err(self.nothing_moves()) };

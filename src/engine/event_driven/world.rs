@@ -52,6 +52,8 @@ pub(super) struct World<V: Vector> {
     pub(super) watch: CollapseWatch,
     /// What happened since the last report.
     pub(super) counts: Counts<V>,
+    /// Collisions since the last report up to the departure of each grain that has left.
+    pub(super) removals: Vec<u64>,
     /// What events there were since the last report.
     pub(super) events: EventCounts,
     /// What happens in each cell of the gas, where somebody counts it.
@@ -105,6 +107,7 @@ impl<V: Vector> World<V> {
             pace: Pace::default(),
             watch: CollapseWatch::default(),
             counts: Counts::default(),
+            removals: Vec::new(),
             events: EventCounts::default(),
             cell_tally: None,
         }
@@ -225,6 +228,7 @@ impl<V: Vector> World<V> {
             duration,
             capped: false,
             counts: std::mem::take(&mut self.counts),
+            removals: std::mem::take(&mut self.removals),
             events: std::mem::take(&mut self.events),
         }
     }
