@@ -31,13 +31,16 @@ class Log:
             reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
             self.metadata = next(one.metadata for one in reader.iter_metadata() if one.name == "grainflow")
             messages = {topic: [] for topic in ("/measures", "/particles", "/state", "/walls")}
-            for _, channel, _, message in reader.iter_decoded_messages(topics=list(messages)):
-                messages[channel.topic].append(message)
-        self.times = [one.time for one in messages["/measures"]]
-        self.grains = [one.grains_in_gas for one in messages["/measures"]]
-        self.frames = [points(cloud) for cloud in messages["/particles"]]
-        self.states = [one for one in messages["/state"] if one.first_row == 0]
-        box = {pair.key: pair.value for pair in messages["/walls"][0].entities[0].metadata}
+            for _, channel, raw, message in reader.iter_decoded_messages(topics=list(messages)):
+                messages[channel.topic].append((raw.sequence, message))
+        # A frame belongs to the recording with its number; not every recording has one.
+        recordings = dict(messages["/measures"])
+        self.numbers = [number for number, _ in messages["/particles"]]
+        self.times = [recordings[number].time for number in self.numbers]
+        self.grains = [recordings[number].grains_in_gas for number in self.numbers]
+        self.frames = [points(cloud) for _, cloud in messages["/particles"]]
+        self.states = [one for _, one in messages["/state"] if one.first_row == 0]
+        box = {pair.key: pair.value for pair in messages["/walls"][0][1].entities[0].metadata}
         self.lower = np.array([float(word) for word in box["lower"].split()])
         self.upper = np.array([float(word) for word in box["upper"].split()])
         self.periodic = [box[f"{axis}.lower"] == "periodic" for axis in "xyz"]
@@ -179,7 +182,7 @@ def check_csv(path, log, checks):
     table = pandas.read_csv(path)
     checks.that(len(table) == sum(map(len, log.frames)), "csv: a line for every point")
     for frame in picked(log):
-        part = table[table.frame == frame]
+        part = table[table.frame == log.numbers[frame]]
         checks.that(np.array_equal(part.id, log.frames[frame]["id"]), "csv: ids")
         checks.that((part.time == log.times[frame]).all(), "csv: times")
         found = part[["x", "y", "z"]].to_numpy(np.float32)
@@ -204,7 +207,7 @@ def check_part(export, log, checks):
     """A span, and every second frame of it."""
     start, end = log.times[1], log.times[-2]
     table = pandas.read_csv(export("csv", "--from", repr(start), "--to", repr(end), "--every", "2"))
-    expected = [k for k in range(1, len(log.times) - 1, 2) if len(log.frames[k])]
+    expected = [log.numbers[k] for k in range(1, len(log.times) - 1, 2) if len(log.frames[k])]
     checks.that(sorted(table.frame.unique()) == expected, "a part: every second frame between two times")
 
 
