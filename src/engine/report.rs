@@ -139,6 +139,9 @@ pub struct Since {
     pub collisions_per_particle: f64,
 }
 
+/// Collisions that no run will see, and the last number up to which all are told apart as floating-point ones.
+const BEYOND_REACH: u64 = 1 << 53;
+
 impl<V: Vector> Totals<V> {
     /// Adds one step of a gas of `grains` grains.
     pub fn add(&mut self, report: &StepReport<V>, grains: usize) {
@@ -197,12 +200,15 @@ impl<V: Vector> Totals<V> {
             return u64::MAX;
         }
         let missing = (0.5 * (goal - self.collisions_per_particle) * grains as f64).ceil();
-        let mut further = (missing.max(1.0) as u64).min(u64::MAX / 4);
+        if missing >= BEYOND_REACH as f64 {
+            return BEYOND_REACH;
+        }
+        let mut further = missing.max(1.0) as u64;
         let is_enough = |further: u64| is_reached(self.per_particle_after(further, grains));
         while further > 1 && is_enough(further - 1) {
             further -= 1;
         }
-        while further < u64::MAX / 2 && !is_enough(further) {
+        while further < BEYOND_REACH && !is_enough(further) {
             further += 1;
         }
         further
@@ -261,5 +267,7 @@ mod tests {
             assert!(missing == 1 || !is_reached(totals.per_particle_after(missing - 1, 9)));
         }
         assert_eq!(totals.collisions_until(0, 1.0, |_| true), u64::MAX);
+        // A limit that is never reached is not looked for one collision after the other.
+        assert_eq!(totals.collisions_until(9, 1e30, |per_particle| per_particle >= 1e30), BEYOND_REACH);
     }
 }
