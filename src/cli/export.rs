@@ -8,7 +8,7 @@ use super::run::{STOP, prepare};
 use super::span::Span;
 use super::{Exit, complain, print_text};
 use crate::export::{ExportError, Format, Outcome, Request};
-use crate::replay::log_at;
+use crate::record::log_at;
 
 /// Write the grains of a log in a format that OVITO, ParaView or pandas opens
 #[derive(Args, Debug)]

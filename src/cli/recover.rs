@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::{Exit, complain};
 use crate::record::error::LogError;
+use crate::record::log_at;
 use crate::record::recover::{Recovery, recover as recover_log};
 
 /// Make a clean, indexed log of what is sound in a damaged one
@@ -22,10 +23,7 @@ pub(super) struct RecoverArguments {
 }
 
 pub(super) fn recover(arguments: &RecoverArguments) -> Exit {
-    let log = match arguments.log.is_dir() {
-        true => arguments.log.join("log.mcap"),
-        false => arguments.log.clone(),
-    };
+    let log = log_at(&arguments.log);
     let clean = arguments.out.clone().unwrap_or_else(|| log.with_extension("recovered.mcap"));
     match recover_log(&log, &clean) {
         Ok(None) => {

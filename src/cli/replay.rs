@@ -15,8 +15,8 @@ use super::span::Span;
 use super::{Exit, complain};
 use crate::export::target::{Target, TargetError};
 use crate::record::error::LogError;
+use crate::record::log_at;
 use crate::replay::compute::{Basis, ComputeError};
-use crate::replay::log_at;
 use crate::replay::selection::Selection;
 
 /// Play a log back: its measures as a table, or pictures, a report, a film in the terminal

@@ -1,11 +1,12 @@
 //! `grainflow view`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 use clap::Args;
 
 use super::{Exit, complain};
+use crate::record::log_at;
 use crate::view::{Limits, Server, ViewError, ViewedLog, export, wake};
 
 /// Look at a log in the browser: play it, turn it, with its measures; no network is needed
@@ -54,7 +55,7 @@ pub(super) fn view(arguments: &ViewArguments) -> Exit {
 }
 
 fn show(arguments: &ViewArguments) -> Result<(), ViewError> {
-    let open = |path: &PathBuf| ViewedLog::open(&log_of(path));
+    let open = |path: &PathBuf| ViewedLog::open(&log_at(path));
     let logs = arguments.logs.iter().map(open).collect::<Result<Vec<_>, _>>()?;
     if let Some(page) = &arguments.export {
         for kept in export(&logs, page, arguments.force)? {
@@ -76,9 +77,4 @@ fn show(arguments: &ViewArguments) -> Result<(), ViewError> {
     println!("Ctrl-C ends it");
     server.run(&STOP);
     Ok(())
-}
-
-/// The log that `path` means: itself, or the one of a run folder.
-fn log_of(path: &Path) -> PathBuf {
-    if path.is_dir() { path.join("log.mcap") } else { path.to_owned() }
 }

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 use toml_edit::{DocumentMut, Item, Table};
 
 use super::assemble::{Entry, Head, Replica};
+use crate::record::LOG;
 use crate::record::contents::RunLog;
 use crate::record::error::LogError;
 use crate::record::reader::read_log;
@@ -118,7 +119,7 @@ fn log_of(path: &Path) -> Result<PathBuf, LogsError> {
     if path.extension().is_some_and(|ending| ending == "toml") {
         return Err(LogsError::NotALog(path.to_owned()));
     }
-    let inside = path.join("log.mcap");
+    let inside = path.join(LOG);
     match (path.is_dir(), inside.is_file()) {
         (false, _) => Ok(path.to_owned()),
         (true, true) => Ok(inside),

@@ -28,3 +28,13 @@ mod walls;
 pub mod writer;
 
 pub(crate) use schema::RECOVERED_KEY;
+
+use std::path::{Path, PathBuf};
+
+/// What the log of a run is called in the run's folder.
+pub const LOG: &str = "log.mcap";
+
+/// The log that `path` means: itself, or the one of a run folder.
+pub fn log_at(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join(LOG) } else { path.to_owned() }
+}

@@ -16,11 +16,6 @@ use crate::scenario::model::{AnyScenario, Units};
 use crate::scenario::{Overrides, parse};
 use crate::space::Vector;
 
-/// The log that `path` means: itself, or the one of a run folder.
-pub fn log_at(path: &Path) -> PathBuf {
-    if path.is_dir() { path.join("log.mcap") } else { path.to_owned() }
-}
-
 /// The scenario in a log is none that this version takes.
 #[derive(Debug, thiserror::Error)]
 #[error("the scenario in {} is not one that grainflow {} understands; use the version that wrote the log ({writer})\n{source}", log.display(), env!("CARGO_PKG_VERSION"))]

@@ -19,6 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use serde_json::{Map, Value};
 
 use crate::observe::moments;
+use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::{last_state, read_log};
 use crate::report;
@@ -154,7 +155,7 @@ fn run_in<V: Vector>(
 
 /// Where the log of a run in `folder` stands.
 fn log_of(folder: &RunFolder) -> PathBuf {
-    folder.path().join("log.mcap")
+    folder.path().join(LOG)
 }
 
 /// A run that has begun, or goes on.

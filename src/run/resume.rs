@@ -12,6 +12,7 @@ use super::{Listener, NUMERICS, Outcome, Run, RunError, log_of, run};
 use crate::record::contents::EarlierPart;
 use crate::record::error::LogError;
 use crate::record::history::History;
+use crate::record::log_at;
 use crate::record::reader::{Placed, last_state_and_place};
 use crate::record::state::SavedState;
 use crate::scenario::error::ScenarioError;
@@ -95,7 +96,7 @@ enum State {
 impl Resumption {
     /// Reads the log at `path`, a run folder or its log, and applies the `sets` (`key=value`) to its scenario.
     pub fn open(path: &Path, sets: &[String]) -> Result<Self, ResumeError> {
-        let log = if path.is_dir() { path.join("log.mcap") } else { path.to_owned() };
+        let log = log_at(path);
         if let Some(refused) = sets.iter().enumerate().find(|(_, set)| !may_change(set)) {
             return Err(ResumeError::Change(format!("--set #{} '{}'", refused.0 + 1, refused.1)));
         }

@@ -14,6 +14,7 @@ use crate::record::contents::Frame;
 use crate::record::error::{LogError, numbers};
 use crate::record::frame::frame;
 use crate::record::history::History;
+use crate::record::log_at;
 use crate::scenario::Overrides;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Scenario};
@@ -99,7 +100,7 @@ pub enum Verdict {
 
 /// Verifies the log at `path`, a run folder or its log, until `stop` turns true. `tell` hears of every step.
 pub fn verify(path: &Path, stop: &AtomicBool, tell: Listener<'_>) -> Result<Verdict, VerifyError> {
-    let log = if path.is_dir() { path.join("log.mcap") } else { path.to_owned() };
+    let log = log_at(path);
     let history = History::read(&log)?;
     if history.value("numerics") != NUMERICS.to_string() {
         let (found, version) = (history.value("numerics").to_owned(), history.value("version").to_owned());
