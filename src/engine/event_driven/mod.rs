@@ -26,7 +26,7 @@ mod world;
 mod year;
 
 use crate::engine::cell_counts::CellCount;
-use crate::engine::report::{Counts, StepReport};
+use crate::engine::report::StepReport;
 use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
@@ -75,12 +75,15 @@ impl<V: Vector> World<V> {
     /// tells whether its time was reached.
     fn run(&mut self, horizon: Horizon, most: u64) -> Result<bool, EngineError> {
         let mut end = self.since_origin(horizon.time);
-        // Who waits for a number of collisions per particle has to know when their number changes.
-        let most_gone = if horizon.collisions == u64::MAX { u64::MAX } else { 1 };
-        let is_inside =
-            |counts: &Counts<V>| counts.collisions < horizon.collisions && counts.removed < most_gone;
-        while is_inside(&self.counts) && self.events.all < most {
+        // Who waits for a number of collisions per particle has to know when the number of grains changes: once all that
+        // leave at one moment have left.
+        let is_counted = horizon.collisions != u64::MAX;
+        while self.counts.collisions < horizon.collisions && self.events.all < most {
+            let has_lost = is_counted && self.counts.removed > 0;
             let Some(next) = self.calendar.next(&self.plans) else {
+                if has_lost {
+                    return Ok(false);
+                }
                 if end < self.calendar.year() || self.is_at_rest() {
                     return if end.is_finite() { Ok(true) } else { Err(self.nothing_moves()) };
                 }
@@ -88,6 +91,10 @@ impl<V: Vector> World<V> {
                 end = self.since_origin(horizon.time);
                 continue;
             };
+            if has_lost && next.time > self.now {
+                self.calendar.write(next);
+                return Ok(false);
+            }
             if next.time > end {
                 self.calendar.write(next);
                 return Ok(true);
