@@ -28,6 +28,8 @@ mod mutation;
 mod scaling;
 #[path = "../tests/soak/trial.rs"]
 mod trial;
+#[path = "../tests/soak/watch.rs"]
+mod watch;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -54,7 +56,7 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
 
-    /// Print the scenario of the first case, and run nothing
+    /// Print the scenario of the first case, or what is fired first, and do nothing
     #[arg(long)]
     show: bool,
 
@@ -73,7 +75,7 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if arguments.show {
+    if arguments.show && arguments.fuzz.is_none() {
         print!("{}", draw::scenario_text(arguments.seed, draw::Units::ONE));
         return ExitCode::SUCCESS;
     }
@@ -143,6 +145,10 @@ fn fuzz(arguments: &Arguments, target: &str) -> u64 {
     let place = tempfile::tempdir().expect("a temporary folder can be made");
     let range = Range::new(place.path()).unwrap_or_else(|error| panic!("{error}"));
     let targets: Vec<&str> = TARGETS.into_iter().filter(|one| target == "all" || *one == target).collect();
+    if arguments.show {
+        targets.iter().for_each(|target| println!("{}", range.show(target, arguments.seed)));
+        return 0;
+    }
     // A panic is told with its case, once.
     std::panic::set_hook(Box::new(|_| {}));
     let mut failures = 0;

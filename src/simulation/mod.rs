@@ -205,13 +205,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
         for (measure, taken) in self.measures.iter_mut().zip(&mut self.samples) {
             match sampling(measure.cadence()) {
                 None => {}
-                // A long step may pass several nominal times: each gets its sample.
-                Some(every @ Spread::Every(_)) => {
-                    while every.is_due(*taken, time, progress) {
-                        measure.sample(&snapshot);
-                        *taken += 1;
-                    }
-                }
+                // A long step may pass several nominal times: one look stands for all of them.
                 Some(spread) if spread.is_due(*taken, time, progress) => {
                     measure.sample(&snapshot);
                     *taken = spread.next(time, progress);

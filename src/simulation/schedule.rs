@@ -61,12 +61,13 @@ impl Spread {
     pub fn next(self, time: f64, progress: f64) -> u64 {
         let mut next = match self {
             Spread::Even(number) => (progress * f64::from(number.max(1))) as u64,
-            Spread::Every(interval) => (time / interval) as u64,
+            Spread::Every(interval) if interval > 0.0 => (time / interval) as u64,
+            Spread::Every(_) => u64::MAX,
             Spread::Logarithmic(_) | Spread::Inside(_) | Spread::Start => 0,
         };
         // Rounding may have left the estimate one short or one beyond.
         next = next.saturating_sub(1);
-        while self.is_due(next, time, progress) {
+        while next < u64::MAX && self.is_due(next, time, progress) {
             next += 1;
         }
         next
@@ -101,6 +102,14 @@ mod tests {
         let due = |progress| (0..10).take_while(|&k| spread.is_due(k, 0.0, progress)).count();
         assert_eq!((due(0.0), due(0.2), due(0.25), due(1.0)), (1, 1, 2, 5));
         assert_eq!((spread.next(0.0, 0.0), spread.next(0.0, 0.6), spread.next(0.0, 1.0)), (1, 3, 5));
+    }
+
+    #[test]
+    fn pauses_shorter_than_any_step_are_no_endless_work() {
+        for interval in [0.0, 5e-324, 1e-22] {
+            assert_eq!(Spread::Every(interval).next(0.1, 0.0), u64::MAX);
+        }
+        assert!(Spread::Every(0.0).next(0.0, 0.0) >= u64::MAX - 1);
     }
 
     #[test]

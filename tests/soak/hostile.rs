@@ -17,7 +17,7 @@ use grainflow::stopwatch::peak_memory_bytes;
 
 use super::draw::{Dice, Units, scenario_text};
 use super::trial::caught;
-use super::{logs, mutation};
+use super::{logs, mutation, watch};
 
 /// What is fired at.
 pub(crate) const TARGETS: [&str; 4] = ["scenario", "set", "table", "log"];
@@ -68,7 +68,7 @@ impl Range {
         let mut shot = Shot::default();
         let result = caught(|| {
             shot = self.shot(target, dice);
-            self.land(target, &shot)
+            watch::over(format!("{target} #{seed}\n{}", shot.shown()), || self.land(target, &shot))
         });
         let seconds = since.elapsed().as_secs_f64();
         fired.cases += 1;
@@ -83,6 +83,11 @@ impl Range {
             Ok(_) => return Ok(()),
         };
         Err(format!("{target} #{seed}: {problem}\n{}", shot.shown()))
+    }
+
+    /// What is fired in case number `seed`.
+    pub(crate) fn show(&self, target: &str, seed: u64) -> String {
+        self.shot(target, &mut Dice::new(seed)).shown()
     }
 
     fn shot(&self, target: &str, dice: &mut Dice) -> Shot {
@@ -152,6 +157,10 @@ fn take(scenario: Option<AnyScenario>) -> bool {
     let Some(scenario) = scenario else { return false };
     let said = check(&scenario).to_string();
     assert!(!said.contains("NaN"), "check says NaN:\n{said}");
+    // Who asks for more than a month is warned, and may wait.
+    if said.contains("warning: the run takes about") {
+        return true;
+    }
     match &scenario {
         AnyScenario::Two(scenario) => begin(scenario),
         AnyScenario::Three(scenario) => begin(scenario),

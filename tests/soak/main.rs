@@ -10,6 +10,7 @@ mod long;
 mod mutation;
 mod scaling;
 mod trial;
+mod watch;
 
 use grainflow::engine::{Horizon, NoLaps};
 use grainflow::scenario::model::{AnyScenario, Scenario};

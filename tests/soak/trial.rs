@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::case::{Verdict, check};
 use super::draw::{Units, scenario_text};
+use super::watch;
 
 /// What many cases came to.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,7 +16,8 @@ pub(crate) struct Tally {
 
 /// Case number `seed`; the message of one that fails holds its scenario.
 pub(crate) fn trial(seed: u64, tally: &mut Tally) -> Result<(), String> {
-    let problem = match caught(|| check(seed)) {
+    let verdict = watch::over(format!("seed {seed}"), || caught(|| check(seed)));
+    let problem = match verdict {
         Ok(Verdict::Held(collisions)) => {
             tally.held += 1;
             tally.collisions += collisions;
