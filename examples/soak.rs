@@ -24,6 +24,10 @@ mod logs;
 mod long;
 #[path = "../tests/soak/mutation.rs"]
 mod mutation;
+#[path = "../tests/soak/readers.rs"]
+mod readers;
+#[path = "../tests/soak/requests.rs"]
+mod requests;
 #[path = "../tests/soak/scaling.rs"]
 mod scaling;
 #[path = "../tests/soak/trial.rs"]
@@ -68,8 +72,8 @@ struct Arguments {
     #[arg(long, value_name = "X", default_value_t = 1.0, requires = "long")]
     share: f64,
 
-    /// Fire at a reader in place of running scenarios: scenario, set, table, log or all of them
-    #[arg(long, value_name = "READER", value_parser = ["scenario", "set", "table", "log", "all"])]
+    /// Fire at a reader in place of running scenarios, or at all of them
+    #[arg(long, value_name = "READER", value_parser = TARGETS.iter().copied().chain(["all"]).collect::<Vec<_>>())]
     fuzz: Option<String>,
 }
 

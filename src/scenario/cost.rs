@@ -41,7 +41,7 @@ pub(super) fn settles<V: Vector>(scenario: &Scenario<V>) -> bool {
 }
 
 /// How long a run lasts in its own time [time].
-fn duration<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+pub(super) fn duration<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
     let by_steps = || {
         if scenario.engine.kind.is_event_driven() {
             return estimate::time_of_collisions(scenario);

@@ -1,4 +1,4 @@
-//! Readers under fire: scenario files, `--set`, tables of calibration, logs and their recovery are given input that
+//! Readers under fire: scenario files, `--set`, tables of calibration, logs, requests to the viewer are given input that
 //! is nearly right. They may refuse it; they may not panic, hang or ask for memory without bound.
 
 use std::fs;
@@ -6,21 +6,22 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use grainflow::engine::{Horizon, NoLaps};
-use grainflow::record::reader::{last_state, read_log};
-use grainflow::record::recover::recover;
 use grainflow::scenario::check::check;
 use grainflow::scenario::model::{AnyScenario, InitialPositions, Scenario};
 use grainflow::scenario::{Overrides, builtin, initial, parse, parse_in};
 use grainflow::simulation::Simulation;
 use grainflow::space::Vector;
 use grainflow::stopwatch::peak_memory_bytes;
+use grainflow::view::ViewedLog;
 
 use super::draw::{Dice, Units, scenario_text};
+use super::requests::Door;
 use super::trial::caught;
-use super::{logs, mutation, watch};
+use super::{logs, mutation, readers, requests, watch};
 
 /// What is fired at.
-pub(crate) const TARGETS: [&str; 4] = ["scenario", "set", "table", "log"];
+pub(crate) const TARGETS: [&str; 9] =
+    ["scenario", "set", "table", "log", "recover", "replay", "export", "view", "request"];
 /// The longest that one case may take on a loaded machine [s].
 const PATIENCE: f64 = 20.0;
 /// The most memory that the whole program may come to hold [bytes].
@@ -32,6 +33,8 @@ pub(crate) struct Range {
     sets: Vec<String>,
     tables: Vec<String>,
     logs: Vec<Vec<u8>>,
+    requests: Vec<Vec<u8>>,
+    door: Door,
     place: PathBuf,
 }
 
@@ -58,7 +61,9 @@ impl Range {
         tables.extend(texts(&tests.join("tables"))?);
         let mut files = logs::written(place)?;
         files.extend(contents(&tests.join("corpus/logs"))?);
-        Ok(Range { scenarios, sets, tables, logs: files, place: place.to_owned() })
+        let door = Door::to(ViewedLog::open(&logs::first(place)).map_err(|error| error.to_string())?);
+        let (requests, place) = (requests::known(), place.to_owned());
+        Ok(Range { scenarios, sets, tables, logs: files, requests, door, place })
     }
 
     /// Case number `seed` against `target`; the message of one that is not borne says how to see it again.
@@ -108,10 +113,17 @@ impl Range {
                 let text = any(dice, &self.tables);
                 Shot::text(mutation::text(dice, &text, &self.tables))
             }
+            "request" => {
+                let request = &self.requests[dice.below(self.requests.len())];
+                let wounds = dice.below(4);
+                let data = (0..wounds).fold(request.clone(), |data, _| mutation::bytes(dice, &data));
+                Shot { data, ..Shot::default() }
+            }
             _ => {
                 let log = &self.logs[dice.below(self.logs.len())];
                 let wounded = if dice.chance(0.6) { logs::rewritten(dice, log) } else { None };
-                Shot { data: wounded.unwrap_or_else(|| mutation::bytes(dice, log)), scenario: 0 }
+                let data = wounded.unwrap_or_else(|| mutation::bytes(dice, log));
+                Shot { data, choice: dice.below(1000), ..Shot::default() }
             }
         }
     }
@@ -134,21 +146,19 @@ impl Range {
                 let overrides = Overrides { sets: vec![set], ..Default::default() };
                 Ok(take(parse_in(&self.place, "cooling", scenario, &overrides).ok()))
             }
-            _ => self.read(&shot.data),
+            "request" => Ok(self.door.ask(&shot.data) == 200),
+            _ => {
+                let log = self.place.join("fire.mcap");
+                fs::write(&log, &shot.data).map_err(|error| error.to_string())?;
+                Ok(match target {
+                    "recover" => readers::recovered(&log),
+                    "replay" => readers::replayed(&log),
+                    "export" => readers::exported(&log, shot.choice),
+                    "view" => readers::viewed(&log),
+                    _ => readers::read(&log),
+                })
+            }
         }
-    }
-
-    fn read(&self, data: &[u8]) -> Result<bool, String> {
-        let (log, clean) = (self.place.join("fire.mcap"), self.place.join("clean.mcap"));
-        fs::write(&log, data).map_err(|error| error.to_string())?;
-        let read = read_log(&log).is_ok();
-        let flat = last_state::<glam::DVec2>(&log).is_ok();
-        let deep = last_state::<glam::DVec3>(&log).is_ok();
-        // What was recovered is a log, unless what it was made of is none: no checksum guards the messages then.
-        if recover(&log, &clean).is_ok() {
-            let _ = read_log(&clean);
-        }
-        Ok(read && (flat || deep))
     }
 }
 
@@ -193,11 +203,13 @@ struct Shot {
     data: Vec<u8>,
     /// Which built-in scenario a `--set` changes.
     scenario: usize,
+    /// Which of several ways to read a log is taken.
+    choice: usize,
 }
 
 impl Shot {
     fn text(text: String) -> Self {
-        Shot { data: text.into_bytes(), scenario: 0 }
+        Shot { data: text.into_bytes(), ..Shot::default() }
     }
 
     fn words(&self) -> String {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use grainflow::run::run;
@@ -35,6 +35,11 @@ pub(crate) fn written(place: &Path) -> Result<Vec<Vec<u8>>, String> {
         fs::read(folder.join("log.mcap")).map_err(|error| error.to_string())
     };
     SCENARIOS.iter().enumerate().map(log).collect()
+}
+
+/// The first of these logs.
+pub(crate) fn first(place: &Path) -> PathBuf {
+    place.join("run-0/log.mcap")
 }
 
 /// `log` with wounds in messages, descriptions, metadata or the scenario, and with checksums that hold.

@@ -8,6 +8,8 @@ mod laws;
 mod logs;
 mod long;
 mod mutation;
+mod readers;
+mod requests;
 mod scaling;
 mod trial;
 mod watch;
