@@ -48,6 +48,18 @@ fn readers_bear_what_is_nearly_right() {
     }
 }
 
+/// A failure is told by its number: the same number has to be the same case.
+#[test]
+fn the_same_number_is_the_same_shot() {
+    let place = tempfile::tempdir().unwrap();
+    let range = hostile::Range::new(place.path()).unwrap();
+    for target in hostile::TARGETS {
+        let shown: Vec<String> = (1..20).map(|seed| range.show(target, seed)).collect();
+        assert_eq!(shown, (1..20).map(|seed| range.show(target, seed)).collect::<Vec<_>>(), "{target}");
+        assert!(shown.windows(2).any(|pair| pair[0] != pair[1]), "{target}");
+    }
+}
+
 #[test]
 fn long_runs_lose_nothing() {
     for long in long::all(5e-3) {

@@ -21,6 +21,7 @@ pub(crate) fn over<T>(what: String, work: impl FnOnce() -> T) -> T {
     result
 }
 
+#[expect(clippy::print_stderr, reason = "the program ends before anybody else could tell")]
 fn look() {
     loop {
         thread::sleep(Duration::from_secs(1));
