@@ -2,6 +2,7 @@
 
 pub mod beginning;
 pub mod folder;
+mod last_good;
 mod looks;
 mod recorder;
 mod rerun;
@@ -18,6 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use serde_json::{Map, Value};
 
+use crate::observe::measure::Place;
 use crate::observe::moments;
 use crate::record::LOG;
 use crate::record::error::LogError;
@@ -63,13 +65,19 @@ pub enum RunError {
         source: std::io::Error,
     },
     /// The simulation cannot go on. The log holds everything up to here.
-    #[error("{source}\nthe log up to this time is {}", log.display())]
+    #[error("{source}\nthe log up to this time is {}{}", log.display(), last_state_words(*state))]
     Simulation {
         /// What happened.
         source: SimulationError,
         /// The log.
         log: PathBuf,
+        /// When its last state was, that before the step which failed [time]; `None` where it could not be found again.
+        state: Option<f64>,
     },
+}
+
+fn last_state_words(state: Option<f64>) -> String {
+    state.map_or_else(String::new, |time| format!(", with the state before that, at t = {time}"))
 }
 
 impl RunError {
@@ -176,9 +184,9 @@ impl<V: Vector> Run<'_, V> {
         let ending = match ended {
             Ok(ending) => ending,
             Err(StepError::Log(error)) => return Err(error.into()),
-            Err(StepError::Simulation(source)) => {
-                recorder.finish_after_failure()?;
-                return Err(RunError::Simulation { source, log });
+            Err(StepError::Simulation(source, before)) => {
+                let has_state = recorder.finish_after_failure(simulation.scenario(), before, stop)?;
+                return Err(RunError::Simulation { source, log, state: has_state.then_some(before.time) });
             }
         };
         let recorded = recorder.finish(&mut simulation)?;
@@ -199,7 +207,8 @@ impl<V: Vector> Run<'_, V> {
 
 /// Why a step or its recording failed.
 enum StepError {
-    Simulation(SimulationError),
+    /// And where it was before the step.
+    Simulation(SimulationError, Place),
     Log(LogError),
 }
 
@@ -229,7 +238,8 @@ fn go_on<V: Vector>(
             let time = simulation.gas().time().next_up();
             (stops, horizon) = (true, horizon.min(Horizon { time, ..Horizon::NONE }));
         }
-        simulation.advance(watch, horizon).map_err(StepError::Simulation)?;
+        let before = simulation.observation().1.place();
+        simulation.advance(watch, horizon).map_err(|error| StepError::Simulation(error, before))?;
     }
 }
 

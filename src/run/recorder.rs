@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use super::NUMERICS;
+use super::last_good::last_good;
 use super::looks::Looks;
 use super::shown::Shown;
 use super::timetable::Timetable;
@@ -154,9 +156,20 @@ impl Recorder {
         Ok(self.recorded)
     }
 
-    /// Ends the log of a run that cannot go on; what was recorded stays readable.
-    pub(super) fn finish_after_failure(self) -> Result<(), LogError> {
-        self.writer.finish()
+    /// Ends the log of a run that could not go on from `place`, with the state there, unless `stop` turns true before that is
+    /// found. Returns whether it was.
+    pub(super) fn finish_after_failure<V: Vector>(
+        mut self,
+        scenario: &Scenario<V>,
+        place: Place,
+        stop: &AtomicBool,
+    ) -> Result<bool, LogError> {
+        self.writer.flush()?;
+        let log = self.writer.path().to_owned();
+        let saved = last_good(scenario, &log, place, stop, |state| self.writer.state(state));
+        let is_saved = saved.transpose()?.is_some();
+        self.writer.finish()?;
+        Ok(is_saved)
     }
 
     fn record<V: Vector>(

@@ -28,9 +28,10 @@ pub(super) struct Rerun<'s, V: Vector> {
     tell: Listener<'s>,
 }
 
-struct Running<'s, V: Vector> {
-    simulation: Simulation<'s, V>,
-    timetable: Timetable,
+/// A run that is looked at when the first one was, so that its measures remember the same.
+pub(super) struct Running<'s, V: Vector> {
+    pub(super) simulation: Simulation<'s, V>,
+    pub(super) timetable: Timetable,
     looks: Looks,
 }
 
@@ -45,8 +46,24 @@ pub(super) enum Reached {
 }
 
 impl<'s, V: Vector> Running<'s, V> {
-    fn new(mut simulation: Simulation<'s, V>, timetable: Timetable) -> Self {
+    pub(super) fn new(mut simulation: Simulation<'s, V>, timetable: Timetable) -> Self {
         Running { looks: Looks::of(&mut simulation), simulation, timetable }
+    }
+
+    /// Takes a recording, the one that is due if one is: its values.
+    pub(super) fn recording(&mut self) -> Vec<f64> {
+        let Running { simulation, timetable, looks } = self;
+        let mut shown = Shown::ALL;
+        if timetable.wants_recording(simulation) {
+            shown = Shown::at(timetable.due(simulation), &simulation.scenario().record);
+            timetable.recorded(simulation);
+        }
+        let (measures, snapshot) = simulation.observation();
+        let (values, _) = looks.take(measures, &snapshot, shown.profiles);
+        if shown.fields {
+            simulation.restart_cell_counts();
+        }
+        values
     }
 }
 
@@ -147,18 +164,8 @@ impl<'s, V: Vector> Rerun<'s, V> {
 
     /// Takes the recording that is due: names of the columns, and their values.
     pub(super) fn recording(&mut self) -> (Vec<String>, Vec<f64>) {
-        let Running { simulation, timetable, looks } = self.now_mut();
-        let mut shown = Shown::ALL;
-        if timetable.wants_recording(simulation) {
-            shown = Shown::at(timetable.due(simulation), &simulation.scenario().record);
-            timetable.recorded(simulation);
-        }
-        let (measures, snapshot) = simulation.observation();
-        let (values, _) = looks.take(measures, &snapshot, shown.profiles);
-        if shown.fields {
-            simulation.restart_cell_counts();
-        }
-        (looks.columns.iter().map(|column| column.name.clone()).collect(), values)
+        let values = self.now_mut().recording();
+        (self.now().looks.columns.iter().map(|column| column.name.clone()).collect(), values)
     }
 
     /// Saves the state that is due after so many `steps` and `events`, and lets `judge` look at it. Where a part of the run
