@@ -11,6 +11,7 @@ use super::log::ViewedLog;
 use super::packing::chosen;
 use super::page::{self, Contents};
 use crate::record::contents::Frame;
+use crate::record::error::LogError;
 use crate::record::index::Moment;
 use crate::report::scene::speed;
 use crate::stopwatch::process_number;
@@ -37,6 +38,8 @@ pub struct Exported {
     pub points: usize,
     /// Most recorded points of such a frame.
     pub points_in_log: usize,
+    /// Frames that would be there, were their bytes not wrong.
+    pub damaged: usize,
 }
 
 /// Writes the page of `logs` to `path`; what stands there is replaced only with `force`, once the new page is complete.
@@ -81,8 +84,13 @@ impl Exported {
             true => "every recorded grain".to_owned(),
             false => format!("at most {} of {} recorded grains", self.points, self.points_in_log),
         };
+        let damaged = match self.damaged {
+            0 => String::new(),
+            1 => " One frame is damaged and left out.".to_owned(),
+            damaged => format!(" {damaged} frames are damaged and left out."),
+        };
         format!(
-            "This page holds {frames}, with {points}, to a 65 000th of the box; the log holds more digits."
+            "This page holds {frames}, with {points}, to a 65 000th of the box; the log holds more digits.{damaged}"
         )
     }
 }
@@ -105,25 +113,34 @@ impl Pack {
         let most = log.most_points().clamp(1, MOST_POINTS);
         let count = (budget / (point_bytes * most)).clamp(FEWEST_FRAMES, MOST_FRAMES).min(in_log);
         let points = most.min(budget / (point_bytes * count.max(1)));
-        let numbers: Vec<usize> = match count {
-            0 | 1 => (0..count).collect(),
-            _ => (0..count).map(|k| k * (in_log - 1) / (count - 1)).collect(),
+        let wanted = (0..count).map(|k| if count > 1 { k * (in_log - 1) / (count - 1) } else { k });
+        let mut pack = Pack {
+            numbers: Vec::new(),
+            bytes: Vec::new(),
+            row_step: 1,
+            rows: 0,
+            exported: Exported::default(),
         };
-        let mut pack =
-            Pack { numbers, bytes: Vec::new(), row_step: 1, rows: 0, exported: Exported::default() };
-        pack.exported.frames = count;
         pack.exported.frames_in_log = in_log;
-        for place in 0..count {
-            if let Some(moment) = log.index().moment(pack.numbers[place])? {
-                let shown = pack.put(log, &moment, points);
-                pack.exported.points = pack.exported.points.max(shown);
-                let recorded = moment.frame.positions.len();
-                pack.exported.points_in_log = pack.exported.points_in_log.max(recorded);
-            }
+        for number in wanted {
+            let moment = match log.index().moment(number) {
+                Ok(Some(moment)) => moment,
+                Ok(None) => continue,
+                Err(LogError::Damaged { .. }) => {
+                    pack.exported.damaged += 1;
+                    continue;
+                }
+                Err(error) => return Err(error.into()),
+            };
+            let shown = pack.put(log, &moment, points);
+            pack.numbers.push(number);
+            pack.exported.frames += 1;
+            pack.exported.points = pack.exported.points.max(shown);
+            pack.exported.points_in_log = pack.exported.points_in_log.max(moment.frame.positions.len());
         }
         pack.row_step = log.index().recordings().div_ceil(MOST_ROWS).max(1);
         for number in (0..log.index().recordings()).step_by(pack.row_step) {
-            let row = log.index().row(number)?.unwrap_or_default();
+            let row = log.row(number)?.unwrap_or_default();
             pack.rows += 1;
             row.iter().for_each(|value| pack.bytes.extend_from_slice(&value.to_le_bytes()));
         }

@@ -65,6 +65,14 @@ impl ViewedLog {
         &self.index
     }
 
+    /// Row `number` of the series, NaN where it is damaged: the page counts these gaps and says so.
+    pub(super) fn row(&self, number: usize) -> Result<Option<Vec<f64>>, LogError> {
+        match self.index.row(number) {
+            Err(LogError::Damaged { .. }) => Ok(Some(vec![f64::NAN; self.index.head().columns.len()])),
+            row => row,
+        }
+    }
+
     /// Where it is.
     pub(super) fn name(&self) -> &str {
         &self.name

@@ -81,13 +81,7 @@ impl Site {
         let watch = Stopwatch::default();
         let mut bytes = Vec::new();
         for number in (from..log.index().recordings()).step_by(step).take(count) {
-            let row = match log.index().row(number) {
-                Ok(Some(row)) => row,
-                Ok(None) => break,
-                // A gap: the page counts them and says so.
-                Err(LogError::Damaged { .. }) => vec![f64::NAN; log.index().head().columns.len()],
-                Err(error) => return Err(failure(&error)),
-            };
+            let Some(row) = log.row(number).map_err(|error| failure(&error))? else { break };
             row.iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
             if watch.seconds() > MOST_SECONDS {
                 break;

@@ -5,7 +5,7 @@ use grainflow::record::index::LogIndex;
 use grainflow::record::reader::read_log;
 use grainflow::record::state::SavedState;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
-use grainflow::view::Site;
+use grainflow::view::{Site, ViewedLog, export};
 use proptest::prelude::*;
 
 use super::{GRAINS, RECORDINGS, float, get, grains, header, sample, site, text, word};
@@ -151,6 +151,14 @@ fn a_damaged_frame_is_told_and_the_others_are_shown() {
     assert_eq!(rows.len(), RECORDINGS * 24);
     let lost: Vec<usize> = (0..RECORDINGS).filter(|row| float(&rows, 24 * row).is_nan()).collect();
     assert_eq!(lost, bad);
+    // A page of its own has the others, too.
+    let page = path.with_extension("html");
+    let kept = export(&[ViewedLog::open(&path).unwrap()], &page, false).unwrap();
+    assert_eq!((kept[0].frames, kept[0].damaged), (RECORDINGS - 1, 1));
+    assert!(
+        kept[0].sentence().contains("11 of 12 frames") && kept[0].sentence().contains("One frame is damaged")
+    );
+    assert!(std::fs::read_to_string(&page).unwrap().contains("One frame is damaged"));
 }
 
 #[test]
