@@ -12,12 +12,12 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use grainflow::engine::report::EventCounts;
 use grainflow::engine::{Engine, Horizon, NoLaps};
+use grainflow::machine::peak_memory_bytes;
 use grainflow::matter::gas::Gas;
 use grainflow::scenario::model::{AnyScenario, Scenario};
 use grainflow::scenario::{Overrides, initial, parse};
 use grainflow::simulation::assembly;
 use grainflow::space::Vector;
-use grainflow::stopwatch::peak_memory_bytes;
 
 /// Dimension and volume fraction of each case.
 const CASES: [(usize, f64); 4] = [(3, 0.01), (3, 0.25), (3, 0.49), (2, 0.25)];

@@ -36,6 +36,8 @@ pub mod record;
 
 pub mod comparison;
 pub mod export;
+pub mod machine;
+pub mod placing;
 pub mod replay;
 pub mod report;
 pub mod run;

@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::input::ScenarioInput;
 use super::{Exit, complain};
+use crate::machine::Machine;
 use crate::scenario::check::check_on;
-use crate::stopwatch::Machine;
 
 /// Say what a scenario means, or all that is wrong with it; nothing runs
 #[derive(Args, Debug)]

@@ -9,11 +9,12 @@ use serde_json::Value;
 use super::input::ScenarioInput;
 use super::progress::Progress;
 use super::{Exit, complain};
+use crate::machine::Machine;
+use crate::run::folder::REPORT;
 use crate::run::resume::{ResumeError, Resumption};
 use crate::run::{Outcome, RunError};
 use crate::scenario::check::check_on;
 use crate::scenario::model::AnyScenario;
-use crate::stopwatch::Machine;
 
 const RESUMING: &str =
     "With --resume the new folder holds the whole run, to the same bits as without interruption;
@@ -209,6 +210,6 @@ fn closing_words(outcome: &Outcome) -> String {
     if let Some(speed) = number("events_per_second") {
         text += &format!("  {:.2} million events per second\n", speed * 1e-6);
     }
-    text += &format!("wrote {}\n", outcome.folder.join("report.html").display());
+    text += &format!("wrote {}\n", outcome.folder.join(REPORT).display());
     text
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value};
 use toml_edit::{DocumentMut, Item, Table};
 
 use super::assemble::{Entry, Head, Replica};
@@ -11,6 +10,7 @@ use crate::record::LOG;
 use crate::record::contents::RunLog;
 use crate::record::error::LogError;
 use crate::record::reader::read_log;
+use crate::record::summary::{SummaryError, summary_beside};
 use crate::scenario::{Overrides, parse};
 
 /// What logs must have in common: key of the metadata, and its name in a message.
@@ -35,13 +35,8 @@ pub enum LogsError {
     #[error(transparent)]
     Log(#[from] LogError),
     /// A summary beside a log is broken.
-    #[error("{}: {reason}; take it away, and the log is compared without figures", path.display())]
-    Summary {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
+    #[error("{0}; take it away, and the log is compared without figures")]
+    Summary(#[from] SummaryError),
     /// Logs that do not belong together.
     #[error("{}: its {what} is `{own}`, and that of {} is `{other}`; compare runs of one scenario", path.display(), first.display())]
     Unlike {
@@ -125,17 +120,6 @@ fn log_of(path: &Path) -> Result<PathBuf, LogsError> {
         (true, true) => Ok(inside),
         (true, false) => Err(LogsError::NotALog(path.to_owned())),
     }
-}
-
-/// The summary of a stored run, where it has one.
-fn summary_beside(log: &Path) -> Result<Option<Map<String, Value>>, LogsError> {
-    let path = log.with_file_name("summary.json");
-    if !path.is_file() {
-        return Ok(None);
-    }
-    let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
-    let read = text.and_then(|text| serde_json::from_str(&text).map_err(|error| error.to_string()));
-    read.map(Some).map_err(|reason| LogsError::Summary { path, reason })
 }
 
 fn check_alike(paths: [&PathBuf; 2], logs: [&RunLog; 2]) -> Result<(), LogsError> {

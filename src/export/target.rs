@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::stopwatch::process_number;
+use crate::placing::{PlacingError, beside, put};
 
 /// Why a place cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +24,14 @@ pub enum TargetError {
         path: PathBuf,
         /// The option that names another one.
         option: &'static str,
+    },
+    /// The new one stands in its place, and the old one is not gone.
+    #[error("{} is written, but {source}", path.display())]
+    Leftover {
+        /// The place.
+        path: PathBuf,
+        /// Where the old one is, and why.
+        source: PlacingError,
     },
     /// The system refuses.
     #[error("cannot write {}: {source}; nothing is left of it, and what was there before stands as it was", path.display())]
@@ -93,23 +101,16 @@ impl Target {
 
     /// Puts what was written in its place, and returns that.
     pub fn settle(mut self) -> Result<PathBuf, TargetError> {
-        self.replace().map_err(|source| self.failed(source))?;
+        match put(&self.working, &self.wanted) {
+            Ok(()) => {}
+            Err(PlacingError::Refused(source)) => return Err(self.failed(source)),
+            Err(leftover) => {
+                self.is_settled = true;
+                return Err(TargetError::Leftover { path: self.wanted.clone(), source: leftover });
+            }
+        }
         self.is_settled = true;
         Ok(self.wanted.clone())
-    }
-
-    fn replace(&self) -> io::Result<()> {
-        if !self.wanted.is_dir() {
-            return fs::rename(&self.working, &self.wanted);
-        }
-        // A folder does not take the place of one that holds something.
-        let old = beside(&self.wanted, "old");
-        fs::rename(&self.wanted, &old)?;
-        if let Err(error) = fs::rename(&self.working, &self.wanted) {
-            fs::rename(&old, &self.wanted)?;
-            return Err(error);
-        }
-        fs::remove_dir_all(&old)
     }
 
     /// The error of writing here.
@@ -133,7 +134,7 @@ impl Drop for Target {
 impl TargetError {
     /// Whether the place was ill chosen, rather than the disk full.
     pub fn is_bad_input(&self) -> bool {
-        !matches!(self, TargetError::Io { .. })
+        matches!(self, TargetError::Exists { .. } | TargetError::NotOurs { .. })
     }
 }
 
@@ -147,11 +148,6 @@ fn holds_only(folder: &Path, endings: &[&str]) -> bool {
                 && path.extension().is_some_and(|ending| endings.iter().any(|wanted| ending == *wanted))
         })
     })
-}
-
-fn beside(path: &Path, word: &str) -> PathBuf {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    path.with_file_name(format!(".{name}.{word}-{}", process_number()))
 }
 
 #[cfg(test)]

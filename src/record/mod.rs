@@ -22,6 +22,7 @@ mod saved;
 mod scan;
 mod schema;
 pub mod state;
+pub mod summary;
 pub mod time_scale;
 pub mod walk;
 mod walls;

@@ -4,7 +4,16 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::stopwatch::process_number;
+use crate::placing::{PlacingError, beside, put};
+use crate::record::LOG;
+use crate::record::summary::SUMMARY;
+
+/// Files of a run folder, beside its [`LOG`].
+pub const SERIES: &str = "series.csv";
+/// The page.
+pub const REPORT: &str = "report.html";
+/// The folder of the profiles.
+pub const PROFILES: &str = "profiles";
 
 /// Why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +29,27 @@ pub enum FolderError {
     NotAFolder {
         /// The file.
         path: PathBuf,
+    },
+    /// The run is complete and cannot be put in its place.
+    #[error(
+        "the run is complete, but cannot take the place of {}, which stands as it was: {source}; it is kept in {}",
+        path.display(), working.display()
+    )]
+    Unsettled {
+        /// The folder.
+        path: PathBuf,
+        /// Where the new run stands.
+        working: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The run stands in its place, and the old one is not gone.
+    #[error("the run stands in {}, but {source}", path.display())]
+    Leftover {
+        /// The folder.
+        path: PathBuf,
+        /// Where the old run is, and why.
+        source: PlacingError,
     },
     /// The system refuses.
     #[error("cannot use {} as a run folder: {source}", path.display())]
@@ -76,12 +106,33 @@ impl RunFolder {
     /// Puts the run in its place, and returns that.
     pub fn settle(self) -> Result<PathBuf, FolderError> {
         if self.working != self.wanted {
-            let old = beside(&self.wanted, "old");
-            fs::rename(&self.wanted, &old).map_err(|source| io_error(&self.wanted, source))?;
-            fs::rename(&self.working, &self.wanted).map_err(|source| io_error(&self.wanted, source))?;
-            fs::remove_dir_all(&old).map_err(|source| io_error(&old, source))?;
+            put(&self.working, &self.wanted).map_err(|source| {
+                let (path, working) = (self.wanted.clone(), self.working.clone());
+                match source {
+                    PlacingError::Refused(source) => FolderError::Unsettled { path, working, source },
+                    leftover => FolderError::Leftover { path, source: leftover },
+                }
+            })?;
         }
         Ok(self.wanted)
+    }
+}
+
+/// Takes away what a run has written to `folder`, and the folder where it holds nothing else.
+pub fn take_away_run(folder: &Path) -> io::Result<()> {
+    for name in [LOG, SERIES, SUMMARY, REPORT] {
+        match fs::remove_file(folder.join(name)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
+    }
+    match fs::remove_dir_all(folder.join(PROFILES)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    match fs::remove_dir(folder) {
+        Err(error) if error.kind() != io::ErrorKind::DirectoryNotEmpty => Err(error),
+        _ => Ok(()),
     }
 }
 
@@ -91,11 +142,6 @@ fn is_occupied(path: &Path) -> io::Result<bool> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(error),
     }
-}
-
-fn beside(path: &Path, word: &str) -> PathBuf {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    path.with_file_name(format!("{name}.{word}-{}", process_number()))
 }
 
 fn io_error(path: &Path, source: io::Error) -> FolderError {
@@ -119,6 +165,26 @@ mod tests {
         folder.settle().unwrap();
         assert_eq!(fs::read_to_string(wanted.join("log.mcap")).unwrap(), "new");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_run_goes_and_what_others_put_beside_it_stays() {
+        let place = tempfile::tempdir().unwrap();
+        let run = place.path().join("run");
+        let write = || {
+            fs::create_dir_all(run.join(PROFILES)).unwrap();
+            fs::write(run.join(LOG), "").unwrap();
+            fs::write(run.join(PROFILES).join("a.csv"), "").unwrap();
+        };
+        write();
+        fs::write(run.join("notes.txt"), "mine").unwrap();
+        take_away_run(&run).unwrap();
+        let left: Vec<_> = fs::read_dir(&run).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["notes.txt"]);
+        fs::remove_file(run.join("notes.txt")).unwrap();
+        write();
+        take_away_run(&run).unwrap();
+        assert!(!run.exists());
     }
 
     #[test]

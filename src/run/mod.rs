@@ -21,16 +21,18 @@ use serde_json::{Map, Value};
 
 use crate::observe::measure::Place;
 use crate::observe::moments;
+use crate::placing::write_whole;
 use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::{last_state, read_log};
+use crate::record::summary::SUMMARY;
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
 use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
 use crate::simulation::{Simulation, SimulationError};
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
-use folder::{FolderError, RunFolder};
+use folder::{FolderError, REPORT, RunFolder};
 use recorder::Recorder;
 use summary::Ending;
 pub use summary::NUMBERS;
@@ -193,8 +195,9 @@ impl<V: Vector> Run<'_, V> {
         simulation.audit();
         let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
         series::write_tables(folder.path(), simulation.scenario(), &recorded)?;
-        write_text(&folder.path().join("summary.json"), &(pretty(&summary) + "\n"))?;
-        write_text(&folder.path().join("report.html"), &report::render(&read_log(&log)?, &summary))?;
+        write_text(&folder.path().join(REPORT), &report::render(&read_log(&log)?, &summary))?;
+        // The last one: where it stands, the run is complete.
+        write_text(&folder.path().join(SUMMARY), &(pretty(&summary) + "\n"))?;
         let folder = folder.settle()?;
         Ok(Outcome {
             folder,
@@ -267,8 +270,9 @@ pub(crate) fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::ma
     Ok(initial::build(scenario, saved)?)
 }
 
-fn write_text(path: &Path, text: &str) -> Result<(), RunError> {
-    std::fs::write(path, text).map_err(|source| RunError::Write { path: path.to_owned(), source })
+/// Writes a file of a run folder, whole or not at all.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), RunError> {
+    write_whole(path, text.as_bytes()).map_err(|source| RunError::Write { path: path.to_owned(), source })
 }
 
 fn pretty(summary: &Map<String, Value>) -> String {

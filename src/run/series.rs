@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::folder::{PROFILES, SERIES};
 use super::recorder::Recorded;
 use super::{RunError, write_text};
 use crate::observe::measure::{Column, Dimension, Profile};
@@ -16,14 +17,14 @@ pub(super) fn write_tables<V: Vector>(
     recorded: &Recorded,
 ) -> Result<(), RunError> {
     let rows = recorded.series.iter().map(Vec::as_slice);
-    write_text(&folder.join("series.csv"), &table(&recorded.columns, &scenario.units, rows))?;
+    write_text(&folder.join(SERIES), &table(&recorded.columns, &scenario.units, rows))?;
     let mut names: Vec<&str> = recorded.profiles.iter().map(|profile| profile.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     if names.is_empty() {
         return Ok(());
     }
-    let place = folder.join("profiles");
+    let place = folder.join(PROFILES);
     std::fs::create_dir_all(&place).map_err(|source| RunError::Write { path: place.clone(), source })?;
     for name in names {
         let same: Vec<&Profile> = recorded.profiles.iter().filter(|profile| profile.name == name).collect();

@@ -3,13 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::{NUMERICS, momentum_drift};
+use crate::machine::peak_memory_bytes;
 use crate::matter::state_hash::state_hash;
 use crate::observe::measure::Figure;
 use crate::observe::moments;
 use crate::simulation::Simulation;
 use crate::simulation::limits::EndReason;
 use crate::space::Vector;
-use crate::stopwatch::{Stopwatch, peak_memory_bytes};
+use crate::stopwatch::Stopwatch;
 
 /// Keys of numbers that every summary has, whatever the scenario measures; null where they do not apply.
 pub const NUMBERS: [&str; 35] = [

@@ -9,8 +9,8 @@ use super::model::{AnyScenario, EngineKind, InitialPositions, Scenario};
 use super::{cost, warnings};
 use crate::law::kinetic_theory::mean_free_path;
 use crate::law::piecewise::PiecewiseLinear;
+use crate::machine::Machine;
 use crate::space::Vector;
-use crate::stopwatch::Machine;
 
 /// What a scenario means.
 #[derive(Clone, Debug, PartialEq, Eq)]

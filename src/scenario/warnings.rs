@@ -6,8 +6,8 @@ mod resources;
 
 use super::collapse;
 use super::model::Scenario;
+use crate::machine::Machine;
 use crate::space::Vector;
-use crate::stopwatch::Machine;
 
 /// Everything that may spoil `scenario` on `machine`.
 pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Vec<String> {
@@ -30,10 +30,10 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> V
 
 #[cfg(test)]
 mod tests {
+    use crate::machine::Machine;
     use crate::scenario::check::{check, check_on};
     use crate::scenario::model::AnyScenario;
     use crate::scenario::{Overrides, load};
-    use crate::stopwatch::Machine;
 
     fn scenario(name: &str, sets: &[&str]) -> AnyScenario {
         let sets = sets.iter().map(ToString::to_string).collect();

@@ -1,6 +1,5 @@
 //! The page with frames in it: one file that needs neither the log nor a server.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::json;
@@ -10,11 +9,11 @@ use super::error::ViewError;
 use super::log::ViewedLog;
 use super::packing::chosen;
 use super::page::{self, Contents};
+use crate::placing::write_whole;
 use crate::record::contents::Frame;
 use crate::record::error::LogError;
 use crate::record::index::Moment;
 use crate::report::scene::speed;
-use crate::stopwatch::process_number;
 
 /// What frames take in all, before the third that base64 adds [byte].
 const MOST_BYTES: usize = 8_000_000;
@@ -63,13 +62,7 @@ pub fn export(logs: &[ViewedLog], path: &Path, force: bool) -> Result<Vec<Export
     let about = json!({ "colours": page::colours(), "logs": parts });
     let text = page::html(logs, &Contents::Embedded(about, packs));
     let failed = |source| ViewError::Write { path: path.to_owned(), source };
-    let beside = path.with_extension(format!("{}.part", process_number()));
-    let written = fs::write(&beside, text).and_then(|()| fs::rename(&beside, path));
-    if written.is_err() {
-        // What is left of it helps nobody; the first error says why.
-        let _ = fs::remove_file(&beside);
-    }
-    written.map_err(failed)?;
+    write_whole(path, text.as_bytes()).map_err(failed)?;
     Ok(kept)
 }
 

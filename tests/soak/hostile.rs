@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use grainflow::engine::{Horizon, NoLaps};
+use grainflow::machine::peak_memory_bytes;
 use grainflow::scenario::check::check;
 use grainflow::scenario::model::{AnyScenario, InitialPositions, Scenario};
 use grainflow::scenario::{Overrides, builtin, initial, parse, parse_in};
 use grainflow::simulation::Simulation;
 use grainflow::space::Vector;
-use grainflow::stopwatch::peak_memory_bytes;
 use grainflow::view::ViewedLog;
 
 use super::draw::{Dice, Units, scenario_text};

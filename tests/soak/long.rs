@@ -4,11 +4,11 @@
 use std::time::Instant;
 
 use grainflow::engine::{Horizon, NoLaps};
+use grainflow::machine::peak_memory_bytes;
 use grainflow::observe::moments;
 use grainflow::scenario::model::AnyScenario;
 use grainflow::scenario::{Overrides, initial, parse};
 use grainflow::simulation::Simulation;
-use grainflow::stopwatch::peak_memory_bytes;
 
 use super::laws::Laws;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::report::calibration::{Calibration, Entry, Stage, calibration_page};
-use crate::run::RunError;
+use crate::run::{RunError, write_text};
 
 /// Writes all files into `folder`.
 pub(super) fn write(folder: &Path, calibration: &Calibration) -> Result<(), RunError> {
@@ -91,8 +91,4 @@ fn entry(entry: &Entry) -> Value {
         "probability": entry.probability.value,
         "probability_standard_error": entry.probability.standard_error,
     })
-}
-
-fn write_text(path: &Path, text: &str) -> Result<(), RunError> {
-    std::fs::write(path, text).map_err(|source| RunError::Write { path: path.to_owned(), source })
 }

@@ -7,6 +7,7 @@ use super::plan::Plan;
 use super::runs::Run;
 use crate::comparison::model::Comparison;
 use crate::comparison::{Entry, Head, Replica, assemble};
+use crate::record::LOG;
 use crate::record::reader::read_log;
 
 /// The comparison of the runs of `plan` that came to their end, in `folder`; with their costs where each ran `alone`.
@@ -28,7 +29,7 @@ pub(super) fn of_runs(
             diameter: plan.diameter(),
         };
         for (run, summary) in own().filter_map(|run| Some((run, run.summary()?))) {
-            let mut log = read_log(&folder.join(&run.folder).join("log.mcap"))?;
+            let mut log = read_log(&folder.join(&run.folder).join(LOG))?;
             if !entry.runs.is_empty() {
                 // Pictures are shown of the first alone.
                 (log.frames, log.fields) = (Vec::new(), Vec::new());

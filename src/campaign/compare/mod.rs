@@ -13,6 +13,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 
 use crate::comparison::model::Comparison;
 use crate::comparison::{LogsError, assemble, csv, json, read, theory};
+use crate::placing::write_whole;
 use crate::record::error::LogError;
 use crate::report::render_comparison;
 use crate::run::RunError;
@@ -146,7 +147,7 @@ fn write_files(folder: &Path, comparison: &Comparison) -> Result<(), CompareErro
 }
 
 fn write_text(path: &Path, text: &str) -> Result<(), CompareError> {
-    std::fs::write(path, text).map_err(|source| CompareError::Write { path: path.to_owned(), source })
+    write_whole(path, text.as_bytes()).map_err(|source| CompareError::Write { path: path.to_owned(), source })
 }
 
 fn listed(lines: &[String]) -> String {

@@ -8,9 +8,9 @@ use serde_json::{Map, Value};
 
 use super::plan::Plan;
 use super::{CompareError, write_text};
+use crate::machine::forget_peak_memory;
 use crate::run::beginning::write_beginning;
 use crate::run::{RunError, Status, run};
-use crate::stopwatch::forget_peak_memory;
 
 /// One run of a comparison.
 #[derive(Clone, Debug)]

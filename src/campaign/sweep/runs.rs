@@ -1,6 +1,5 @@
 //! Makes the runs of a sweep, some side by side.
 
-use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,6 +10,8 @@ use serde_json::{Map, Value};
 use super::plan::{Case, Plan};
 use super::standing::Standing;
 use super::{Moment, Options, SweepError};
+use crate::placing::write_whole;
+use crate::run::folder::take_away_run;
 
 /// How the run of a case ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -140,7 +141,7 @@ fn run(
     let folder = options.out.join(&case.name);
     // What an interrupted or failed run of the same case left would come again, bit for bit.
     if *standing == Standing::Unfinished
-        && let Err(error) = fs::remove_dir_all(&folder)
+        && let Err(error) = take_away_run(&folder)
     {
         let message = format!("cannot remove the unfinished run {}: {error}", folder.display());
         return Row::without_summary(Ended::Failed(message));
@@ -157,8 +158,5 @@ fn run(
 /// Writes `text` to a file of the folder at once, so that no half of it is ever seen.
 pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<(), SweepError> {
     let path = folder.join(name);
-    let beside = folder.join(format!("{name}.new-{}", crate::stopwatch::process_number()));
-    fs::write(&beside, text)
-        .and_then(|()| fs::rename(&beside, &path))
-        .map_err(|source| SweepError::Write { path, source })
+    write_whole(&path, text.as_bytes()).map_err(|source| SweepError::Write { path, source })
 }

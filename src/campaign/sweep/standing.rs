@@ -5,8 +5,10 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
+use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::read_origin;
+use crate::record::summary::summary_in;
 use crate::run::NUMERICS;
 use crate::scenario::model::AnyScenario;
 
@@ -36,7 +38,7 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
         Ok(false) => {}
         Err(error) => return Standing::Foreign(format!("cannot be read: {error}")),
     }
-    let (metadata, text) = match read_origin(&folder.join("log.mcap")) {
+    let (metadata, text) = match read_origin(&folder.join(LOG)) {
         Ok(origin) => origin,
         Err(LogError::Read { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
             return Standing::Foreign("holds no log".to_owned());
@@ -50,7 +52,11 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
     if let Some(other) = other_program(of_log("version"), of_log("numerics")) {
         return Standing::Foreign(other);
     }
-    let Some(summary) = summary_of(folder) else { return Standing::Unfinished };
+    let summary = match summary_in(folder) {
+        Ok(Some(summary)) => summary,
+        Ok(None) => return Standing::Unfinished,
+        Err(error) => return Standing::Foreign(format!("has a summary that cannot be used: {error}")),
+    };
     let of_summary = |key: &str| summary.get(key).map(ToString::to_string).unwrap_or_default();
     if let Some(other) = other_program(of_summary("version").trim_matches('"'), &of_summary("numerics")) {
         return Standing::Foreign(other);
@@ -59,11 +65,6 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
         return Standing::Unfinished;
     }
     Standing::Finished(summary)
-}
-
-/// The summary in `folder`, if there is a whole one.
-fn summary_of(folder: &Path) -> Option<Map<String, Value>> {
-    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).ok()?).ok()
 }
 
 /// Says so where another program wrote a run.

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::{Failure, Work, write_file};
 use crate::record::contents::RunLog;
 use crate::record::reader::read_log;
+use crate::record::summary::{SummaryError, summary_beside};
 use crate::replay::selection::Selection;
 use crate::replay::tables::tables_of;
 use crate::report::render;
@@ -21,7 +22,7 @@ impl Work<'_> {
         }
         let summary = match self.is_part {
             true => Map::new(),
-            false => summary_beside(self.log)?,
+            false => summary_beside(self.log).map_err(unusable)?.unwrap_or_default(),
         };
         if summary.is_empty() {
             let reason = match self.is_part {
@@ -37,6 +38,10 @@ impl Work<'_> {
         }
         write_file(file, &render(&log, &summary), self.force, "--report").map_err(Failure::from)
     }
+}
+
+fn unusable(error: SummaryError) -> Failure {
+    Failure::Input(format!("{error}; take it away, and the report has no figures"))
 }
 
 /// The recordings of `log` that `selection` picks, with their frames and profiles.
@@ -66,17 +71,4 @@ fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
         walls,
         cut_off,
     }
-}
-
-/// The summary of the run, where it stands beside the log.
-fn summary_beside(log: &Path) -> Result<Map<String, Value>, Failure> {
-    let path = log.with_file_name("summary.json");
-    if !path.is_file() {
-        return Ok(Map::new());
-    }
-    let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
-    let read = text.and_then(|text| serde_json::from_str(&text).map_err(|error| error.to_string()));
-    read.map_err(|reason| {
-        Failure::Input(format!("{}: {reason}; take it away, and the report has no figures", path.display()))
-    })
 }

@@ -1,10 +1,10 @@
 //! Time, memory and disk that a run takes and that are not there.
 
+use crate::machine::Machine;
 use crate::scenario::check::{bytes, count_of, spoken};
 use crate::scenario::model::{Scenario, Spacing};
 use crate::scenario::{cost, estimate};
 use crate::space::Vector;
-use crate::stopwatch::Machine;
 
 /// Logs above this size are seldom meant [bytes].
 const LARGE_LOG: f64 = 1e10;
