@@ -2,4 +2,5 @@
 
 pub mod calibrate;
 pub mod compare;
+mod pools;
 pub mod sweep;

@@ -118,6 +118,23 @@ pub enum EngineError {
         /// When [time].
         time: f64,
     },
+    /// Grains collide too often in a fixed step.
+    #[error(
+        "the fixed time step {step} is too long at t = {time}: a grain would collide {collisions:.1} times in it, and {most} \
+         times is the most; `engine.time_step.fixed` = {longest} would just do here"
+    )]
+    TooManyCollisions {
+        /// The step asked for [time].
+        step: f64,
+        /// The longest that would do [time].
+        longest: f64,
+        /// Collisions of a grain in the step, on an average.
+        collisions: f64,
+        /// The most that may be.
+        most: f64,
+        /// When [time].
+        time: f64,
+    },
     /// A number is no longer finite.
     #[error(
         "grain {id} in cell {cell} has a position or velocity that is not finite after step {step} (seed {seed}, t = {time})"

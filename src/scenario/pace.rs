@@ -45,15 +45,19 @@ pub(super) fn falls_for_ever<V: Vector>(scenario: &Scenario<V>) -> bool {
     (0..V::DIMENSION).any(|axis| scenario.gravity[axis] != 0.0 && scenario.boundary.is_periodic(axis))
 }
 
+/// Whether a jump over a cell makes a difference.
+fn jumps_matter<V: Vector>(scenario: &Scenario<V>) -> bool {
+    let has_sides = !scenario.boundary.is_fully_periodic();
+    scenario.engine.kind == EngineKind::Hsmc || scenario.gravity != V::ZERO || has_sides
+}
+
 /// The longest step that is allowed while the largest speed is `speed` [time]:
 /// the allowed share of min(L/v, √(2L/|g|)) where a jump over a cell matters, any where it does not.
 pub(super) fn longest_step<V: Vector>(scenario: &Scenario<V>, speed: f64) -> f64 {
-    let gravity = scenario.gravity.length();
-    let jumps_matter =
-        scenario.engine.kind == EngineKind::Hsmc || gravity > 0.0 || !scenario.boundary.is_fully_periodic();
-    if !jumps_matter {
+    if !jumps_matter(scenario) {
         return f64::INFINITY;
     }
+    let gravity = scenario.gravity.length();
     let side = scenario.grid().shortest_side();
     let falling = if gravity > 0.0 { (2.0 * side / gravity).sqrt() } else { f64::INFINITY };
     scenario.engine.time_step.largest_crossing() * (side / speed).min(falling)
@@ -62,19 +66,34 @@ pub(super) fn longest_step<V: Vector>(scenario: &Scenario<V>, speed: f64) -> f64
 /// Notes a fixed step that is too long from the first step on.
 pub(super) fn check_fixed_step<V: Vector>(root: &Section<'_>, scenario: &Scenario<V>) -> Option<()> {
     let TimeStep::Fixed(step) = scenario.engine.time_step else { return Some(()) };
-    if scenario.engine.kind.is_event_driven() || step <= longest_step(scenario, certain_speed(scenario)) {
+    if scenario.engine.kind.is_event_driven() {
         return Some(());
     }
-    let side = scenario.grid().shortest_side();
-    let most = rounded_down(longest_step(scenario, starting_speed(scenario)));
-    root.mistake(
-        "engine.time_step.fixed",
+    let mistake = if step > longest_step(scenario, certain_speed(scenario)) {
+        let side = scenario.grid().shortest_side();
+        let most = rounded_down(longest_step(scenario, starting_speed(scenario)));
         format!(
             "{step} is too long from the start: with cells of {} a fixed step lasts at most as long as the smaller of L/v and \
              √(2L/|g|); give at most {most}",
             super::bound::rounded(side)
-        ),
-    );
+        )
+    } else {
+        // Where the crossing of a cell is no bound, the number of collisions is.
+        let rates = super::estimate::rates(scenario).filter(|_| !jumps_matter(scenario));
+        let Some(rates) = rates else { return Some(()) };
+        let collisions = step * rates.collision_frequency;
+        if collisions <= TimeStep::MOST_COLLISIONS {
+            return Some(());
+        }
+        format!(
+            "{step} is too long from the start: a grain would collide {} times in it, and {} times is the most; give at most \
+             {}",
+            super::bound::rounded(collisions),
+            TimeStep::MOST_COLLISIONS,
+            rounded_down(TimeStep::MOST_COLLISIONS / rates.collision_frequency)
+        )
+    };
+    root.mistake("engine.time_step.fixed", mistake);
     None
 }
 
@@ -103,6 +122,17 @@ mod tests {
 
     fn refusal(name: &str, sets: &[&str]) -> String {
         scenario(name, sets).map(|_| ()).unwrap_err()
+    }
+
+    #[test]
+    fn a_step_of_many_collisions_is_refused_where_nothing_else_bounds_it() {
+        let free = ["engine.kind=cba", "engine.time_step.fixed=1e6"];
+        let said = refusal("cooling", &free);
+        assert!(said.contains("a grain would collide") && said.contains("2 times is the most"), "{said}");
+        let frequency = 1.787;
+        let most: f64 = said.rsplit("give at most ").next().unwrap().trim().parse().unwrap();
+        assert!((most * frequency / 2.0 - 1.0).abs() < 0.05, "{said}");
+        assert!(scenario("cooling", &["engine.kind=cba", &format!("engine.time_step.fixed={most}")]).is_ok());
     }
 
     #[test]

@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::plan::Plan;
 use super::{CompareError, write_text};
+use crate::campaign::pools::pools;
 use crate::machine::forget_peak_memory;
 use crate::run::beginning::write_beginning;
 use crate::run::{RunError, Status, run};
@@ -101,12 +102,11 @@ impl Runs<'_> {
 
     /// Replicas on `jobs` groups of threads, each of which takes the next one when it is free.
     fn side_by_side(&self, jobs: usize) -> Result<Vec<Run>, CompareError> {
-        let share = (rayon::current_num_threads() / jobs).max(1);
+        let pools = pools(rayon::current_num_threads(), jobs)?;
         let next = AtomicU32::new(1);
         let gathered = Mutex::new(Ok(Vec::new()));
-        std::thread::scope(|scope| -> Result<(), CompareError> {
-            for _ in 0..jobs {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(share).build()?;
+        std::thread::scope(|scope| {
+            for pool in pools {
                 let (next, gathered) = (&next, &gathered);
                 scope.spawn(move || {
                     let result = pool.install(|| self.some(next));
@@ -122,8 +122,7 @@ impl Runs<'_> {
                     }
                 });
             }
-            Ok(())
-        })?;
+        });
         gathered.into_inner().expect("nobody panics while holding it")
     }
 

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::{Map, Value};
 
 use super::plan::{Case, Plan};
 use super::standing::Standing;
 use super::{Moment, Options, SweepError};
+use crate::campaign::pools::pools;
 use crate::placing::write_whole;
 use crate::run::folder::take_away_run;
 
@@ -77,7 +77,9 @@ pub(super) fn runs(
 ) -> Result<Vec<Row>, SweepError> {
     let wanted: Vec<usize> =
         (0..plan.cases.len()).filter(|&k| !matches!(standings[k], Standing::Finished(_))).collect();
-    let pools = pools(options, wanted.len())?;
+    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = options.threads.unwrap_or_else(all);
+    let pools = pools(threads, options.jobs.min(wanted.len())).map_err(SweepError::Threads)?;
     for k in (0..plan.cases.len()).filter(|k| !wanted.contains(k)) {
         tell(&Moment { case: k, progress: 1.0, ended: None, summary: None });
     }
@@ -115,19 +117,6 @@ fn kept(standing: &Standing) -> Row {
 
 fn locked(rows: &Mutex<Vec<Row>>) -> MutexGuard<'_, Vec<Row>> {
     rows.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// One pool for each run that goes on side by side with others; they share the threads.
-fn pools(options: &Options<'_>, runs: usize) -> Result<Vec<ThreadPool>, SweepError> {
-    let all = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let threads = options.threads.unwrap_or(all);
-    let jobs = options.jobs.min(runs);
-    let pool = |job: usize| {
-        // What does not divide evenly goes to the first pools.
-        let share = threads / jobs + usize::from(job < threads % jobs);
-        ThreadPoolBuilder::new().num_threads(share.max(1)).build()
-    };
-    (0..jobs).map(pool).collect::<Result<_, _>>().map_err(SweepError::Threads)
 }
 
 /// Runs one case into its folder.

@@ -12,6 +12,10 @@ pub enum TimeStep {
 }
 
 impl TimeStep {
+    /// Collisions that a grain may have in a step at most, on an average: beyond that pairs that should have parted long ago
+    /// collide again, and candidates outnumber grains.
+    pub const MOST_COLLISIONS: f64 = 2.0;
+
     /// The share of min(L/v_max, √(2L/|g|)) that a step may last where a jump over a cell could matter:
     /// an adaptive step keeps a margin of two, a fixed one is obeyed as long as nothing jumps.
     pub fn largest_crossing(self) -> f64 {

@@ -26,9 +26,16 @@ pub(crate) fn time_step<V: Vector, R: Restitution>(
     let side = gas.grid().shortest_side();
     let allowed = choice.largest_crossing();
     let longest = if jumps_matter { longest_step(laws, allowed, side, speed) } else { f64::INFINITY };
+    let collisions = |step: f64| 2.0 * step * state.collision_rate.max(0.0) / gas.len().max(1) as f64;
     let wish = match choice {
         TimeStep::Fixed(step) if step > longest => {
             return Err(EngineError::StepTooLong { step, longest, speed, time: gas.time() });
+        }
+        // Where the crossing of a cell is no bound, the number of collisions is.
+        TimeStep::Fixed(step) if !jumps_matter && collisions(step) > TimeStep::MOST_COLLISIONS => {
+            let (collisions, most) = (collisions(step), TimeStep::MOST_COLLISIONS);
+            let longest = step * most / collisions;
+            return Err(EngineError::TooManyCollisions { step, longest, collisions, most, time: gas.time() });
         }
         TimeStep::Fixed(step) => step,
         TimeStep::CollisionsPerParticle(share) => {

@@ -108,7 +108,7 @@ fn time_step(engine: &Section<'_>) -> Option<TimeStep> {
         return None;
     }
     let form = engine.section(KEY, schema::TIME_STEP);
-    let collisions = Bound::up_to(2.0, "a number above 0 and at most 2");
+    let collisions = Bound::up_to(TimeStep::MOST_COLLISIONS, "a number above 0 and at most 2");
     let crossing = Bound::up_to(1.0, "a fraction of a cell above 0 and at most 1");
     let fixed = form.number("fixed", Bound::POSITIVE).map(TimeStep::Fixed);
     let collisions = form.number("collisions_per_particle", collisions).map(TimeStep::CollisionsPerParticle);
