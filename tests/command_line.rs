@@ -328,7 +328,7 @@ fn a_folder_that_cannot_be_made_is_told() {
     assert_eq!(code(&output), 2, "a file is nobody's run: --force does not delete it");
     assert_eq!(fs::read_to_string(place.path("file")).unwrap(), "text");
     let output = place.quick(&["--out", "file/run"]);
-    assert_eq!(code(&output), 1);
+    assert_eq!(code(&output), 2);
     assert!(error(&output).contains("cannot use file/run as a run folder: "), "{}", error(&output));
     // Whoever may write everywhere is not kept from anything by the mode of a folder.
     fs::create_dir(place.path("locked")).unwrap();

@@ -7,6 +7,7 @@ use clap::Args;
 use super::input::ScenarioInput;
 use super::{Exit, complain};
 use crate::machine::Machine;
+use crate::run::check_beginning;
 use crate::scenario::check::check_on;
 
 /// Say what a scenario means, or all that is wrong with it; nothing runs
@@ -20,6 +21,10 @@ pub(super) fn check(arguments: &CheckArguments) -> Exit {
     match arguments.input.load() {
         Ok(scenario) => {
             println!("{}", check_on(&scenario, Machine::holding(Path::new("out"))));
+            if let Err(error) = check_beginning(&scenario) {
+                complain(&error);
+                return Exit::BadInput;
+            }
             Exit::Done
         }
         Err(error) => {

@@ -1,7 +1,8 @@
 //! `grainflow run`.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 use clap::Args;
 use serde_json::Value;
@@ -15,6 +16,7 @@ use crate::run::resume::{ResumeError, Resumption};
 use crate::run::{Outcome, RunError};
 use crate::scenario::check::check_on;
 use crate::scenario::model::AnyScenario;
+use crate::stopwatch::Stopwatch;
 
 const RESUMING: &str =
     "With --resume the new folder holds the whole run, to the same bits as without interruption;
@@ -54,8 +56,10 @@ pub(super) struct RunArguments {
 
 /// Set by the first interrupt: the run ends at its next step.
 pub(super) static STOP: AtomicBool = AtomicBool::new(false);
-/// How often the user has asked to stop.
-static INTERRUPTS: AtomicU32 = AtomicU32::new(0);
+/// Since when the user has asked to stop.
+static FIRST_INTERRUPT: OnceLock<Stopwatch> = OnceLock::new();
+/// Two interrupts that are not farther apart are one [s].
+const SAME_INTERRUPT: f64 = 0.5;
 
 pub(super) fn run(arguments: &RunArguments) -> Exit {
     if arguments.resume {
@@ -147,17 +151,26 @@ fn warn(scenario: &AnyScenario, folder: &Path) {
 }
 
 /// Starts the threads and listens for Ctrl-C and SIGTERM: the first ends the run cleanly, a
-/// second ends the program at once.
+/// second ends the program at once. `timeout` and some shells send one signal twice in a row: that counts once.
 pub(super) fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Error>> {
-    let threads = threads.map_or(0, usize::from);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    let threads = threads.map_or(0, |wanted| usize::from(wanted).min(most_threads()));
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| format!("cannot start the threads: {error}; ask for fewer with --threads"))?;
     ctrlc::set_handler(|| {
         STOP.store(true, SeqCst);
-        if INTERRUPTS.fetch_add(1, SeqCst) > 0 {
+        if FIRST_INTERRUPT.get_or_init(Stopwatch::default).seconds() > SAME_INTERRUPT {
             std::process::exit(Exit::Interrupted as i32);
         }
     })?;
     Ok(())
+}
+
+/// More threads than this only hinder each other; the results are the same bits for any number of them.
+fn most_threads() -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    (4 * cores).max(64)
 }
 
 fn usual_folder(scenario: &AnyScenario) -> PathBuf {

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::placing::{PlacingError, beside, put};
+use crate::record::is_log;
 
 /// Why a place cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -52,9 +53,9 @@ pub struct Target {
 }
 
 impl Target {
-    /// A file at `wanted`; an older file is replaced with `force` only. `option` names the place on the command line.
+    /// A file at `wanted`; an older file is replaced with `force` only, and a log never. `option` names the place on the command line.
     pub fn file(wanted: &Path, force: bool, option: &'static str) -> Result<Self, TargetError> {
-        if wanted.is_dir() {
+        if wanted.is_dir() || (wanted.is_file() && is_log(wanted)) {
             return Err(TargetError::NotOurs { path: wanted.to_owned(), option });
         }
         Self::claim(wanted, force, option)
@@ -169,6 +170,14 @@ mod tests {
         target.settle().unwrap();
         assert_eq!(fs::read_to_string(&wanted).unwrap(), "new");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_log_is_never_replaced() {
+        let place = tempfile::tempdir().unwrap();
+        let log = place.path().join("log.mcap");
+        fs::write(&log, [mcap::MAGIC, b"and more"].concat()).unwrap();
+        assert!(matches!(Target::file(&log, true, "--out"), Err(TargetError::NotOurs { .. })));
     }
 
     #[test]

@@ -35,6 +35,14 @@ use std::path::{Path, PathBuf};
 /// What the log of a run is called in the run's folder.
 pub const LOG: &str = "log.mcap";
 
+/// Whether an MCAP file stands at `path`: nothing else may take its place.
+pub fn is_log(path: &Path) -> bool {
+    use std::io::Read;
+    let mut start = [0; mcap::MAGIC.len()];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == *mcap::MAGIC
+}
+
 /// The log that `path` means: itself, or the one of a run folder.
 pub fn log_at(path: &Path) -> PathBuf {
     if path.is_dir() { path.join(LOG) } else { path.to_owned() }

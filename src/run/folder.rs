@@ -15,12 +15,27 @@ pub const REPORT: &str = "report.html";
 /// The folder of the profiles.
 pub const PROFILES: &str = "profiles";
 
+/// What tells a folder that `run`, `compare` or `calibrate` has written.
+const OWN: [&str; 5] = [LOG, SUMMARY, "comparison.json", "calibration.json", "initial-1"];
+
 /// Why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// There is something in it.
     #[error("{} already holds something; choose another folder with --out, or replace it with --force", path.display())]
     Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Nothing in it comes from here.
+    #[error("{} holds no run, comparison or calibration, so that it is not replaced; choose another folder with --out", path.display())]
+    NotOurs {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// It holds the folder that the program was started in.
+    #[error("{} is the folder that you are in, or holds it, and cannot be replaced; choose another one with --out", path.display())]
+    Here {
         /// The folder.
         path: PathBuf,
     },
@@ -61,6 +76,23 @@ pub enum FolderError {
     },
 }
 
+impl FolderError {
+    /// Whether the folder was ill chosen, rather than the disk full.
+    pub fn is_bad_input(&self) -> bool {
+        use io::ErrorKind::{AlreadyExists, InvalidFilename, NotADirectory};
+        match self {
+            FolderError::Exists { .. }
+            | FolderError::NotAFolder { .. }
+            | FolderError::NotOurs { .. }
+            | FolderError::Here { .. } => true,
+            FolderError::Io { source, .. } => {
+                matches!(source.kind(), AlreadyExists | InvalidFilename | NotADirectory)
+            }
+            FolderError::Unsettled { .. } | FolderError::Leftover { .. } => false,
+        }
+    }
+}
+
 /// A folder that a run writes to.
 #[derive(Debug)]
 pub struct RunFolder {
@@ -76,12 +108,26 @@ impl RunFolder {
     /// Makes the folder. One that holds something is refused; with `force` the run is written beside it
     /// and takes its place at the end, so that the old run survives a failure.
     pub fn claim(wanted: &Path, force: bool) -> Result<Self, FolderError> {
+        // Links stay what they are: the folder that they lead to is the one that is meant.
+        let wanted: &Path = &wanted.components().collect::<PathBuf>();
+        let found = if wanted.is_symlink() || wanted.file_name().is_none() {
+            wanted.canonicalize().ok()
+        } else {
+            None
+        };
+        let wanted = found.as_deref().unwrap_or(wanted);
         if wanted.exists() && !wanted.is_dir() {
             return Err(FolderError::NotAFolder { path: wanted.to_owned() });
         }
         let occupied = is_occupied(wanted).map_err(|source| io_error(wanted, source))?;
         if occupied && !force {
             return Err(FolderError::Exists { path: wanted.to_owned() });
+        }
+        if occupied && is_here(wanted) {
+            return Err(FolderError::Here { path: wanted.to_owned() });
+        }
+        if occupied && !OWN.iter().any(|name| wanted.join(name).exists()) {
+            return Err(FolderError::NotOurs { path: wanted.to_owned() });
         }
         let working = if occupied { beside(wanted, "new") } else { wanted.to_owned() };
         let is_new = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
@@ -136,6 +182,12 @@ pub fn take_away_run(folder: &Path) -> io::Result<()> {
     }
 }
 
+/// Whether `folder` is the current one, or above it.
+fn is_here(folder: &Path) -> bool {
+    let here = std::env::current_dir().and_then(fs::canonicalize);
+    here.is_ok_and(|here| folder.canonicalize().is_ok_and(|folder| here.starts_with(folder)))
+}
+
 fn is_occupied(path: &Path) -> io::Result<bool> {
     match fs::read_dir(path) {
         Ok(mut entries) => Ok(entries.next().is_some()),
@@ -165,6 +217,24 @@ mod tests {
         folder.settle().unwrap();
         assert_eq!(fs::read_to_string(wanted.join("log.mcap")).unwrap(), "new");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_others_wrote_is_not_replaced_and_links_stay() {
+        let place = tempfile::tempdir().unwrap();
+        let (wanted, link) = (place.path().join("thesis"), place.path().join("link"));
+        fs::create_dir(&wanted).unwrap();
+        fs::write(wanted.join("thesis.tex"), "years").unwrap();
+        assert!(matches!(RunFolder::claim(&wanted, true), Err(FolderError::NotOurs { .. })));
+        fs::write(wanted.join(LOG), "old").unwrap();
+        std::os::unix::fs::symlink(&wanted, &link).unwrap();
+        let folder = RunFolder::claim(&link, true).unwrap();
+        fs::write(folder.path().join(LOG), "new").unwrap();
+        folder.settle().unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(wanted.join(LOG)).unwrap(), "new");
+        let here = std::env::current_dir().unwrap();
+        assert!(is_here(&here) && !is_here(&wanted));
     }
 
     #[test]

@@ -52,6 +52,12 @@ pub enum RunError {
     /// The initial state cannot be read from its log.
     #[error("initial.positions: {0}")]
     InitialLog(LogError),
+    /// The log of the initial state has none.
+    #[error(
+        "initial.positions: {} holds no complete state, from which grains could be taken: it was cut off before the first one, \
+         or belongs to another program; name the log of a run that has ended", .0.display()
+    )]
+    InitialState(PathBuf),
     /// The simulation cannot begin: there is no log yet.
     #[error("{0}\nthis was while the grains were equilibrated, before the run: there is no log")]
     Equilibration(SimulationError),
@@ -85,12 +91,11 @@ fn last_state_words(state: Option<f64>) -> String {
 impl RunError {
     /// Whether the input is at fault, rather than the run.
     pub fn is_bad_input(&self) -> bool {
-        matches!(
-            self,
-            RunError::Folder(FolderError::Exists { .. } | FolderError::NotAFolder { .. })
-                | RunError::Initial(_)
-                | RunError::InitialLog(_)
-        )
+        match self {
+            RunError::Folder(error) => error.is_bad_input(),
+            RunError::Initial(_) | RunError::InitialLog(_) | RunError::InitialState(_) => true,
+            _ => false,
+        }
     }
 }
 
@@ -258,12 +263,24 @@ pub(crate) fn status<V: Vector>(simulation: &Simulation<'_, V>) -> Status {
     }
 }
 
+/// Whether the grains that `scenario` begins with can be had: those of a log may not.
+pub fn check_beginning(scenario: &AnyScenario) -> Result<(), RunError> {
+    match scenario {
+        AnyScenario::Two(scenario) if scenario.initial.positions.is_log() => initial_gas(scenario).map(drop),
+        AnyScenario::Three(scenario) if scenario.initial.positions.is_log() => {
+            initial_gas(scenario).map(drop)
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The gas that the scenario begins with, read from a log if it says so.
 pub(crate) fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::Gas<V>, RunError> {
     let saved = match &scenario.initial.positions {
         InitialPositions::Log(path) => {
             let state = last_state::<V>(path).map_err(RunError::InitialLog)?;
-            Some(state.map(|state| state.columns.into_owned()).unwrap_or_default())
+            let state = state.ok_or_else(|| RunError::InitialState(path.clone()))?;
+            Some(state.columns.into_owned())
         }
         _ => None,
     };

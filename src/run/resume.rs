@@ -61,8 +61,8 @@ pub enum ResumeError {
     OtherScenario(PathBuf),
     /// The new end is already past.
     #[error(
-        "the log {} has come to t = {time} and {collisions:.6} collisions per particle, where run.{limit} ends the run; \
-         give a later end: --set run.{limit}=…", path.display()
+        "the log {} has come to t = {time}, {steps} steps and {collisions:.6} collisions per particle, where run.{limit} ends \
+         the run; give a later end: --set run.{limit}=…", path.display()
     )]
     Past {
         /// The log.
@@ -71,6 +71,8 @@ pub enum ResumeError {
         limit: &'static str,
         /// When its last state was saved [time].
         time: f64,
+        /// Steps up to then; none of an engine without steps.
+        steps: u64,
         /// Collisions per particle up to then.
         collisions: f64,
     },
@@ -186,22 +188,30 @@ impl Resumption {
             _ => None,
         };
         match reached {
-            Some((limit, time, collisions)) => {
-                Err(ResumeError::Past { path: self.log.clone(), limit, time, collisions })
+            Some((limit, Progress { time, steps, collisions })) => {
+                Err(ResumeError::Past { path: self.log.clone(), limit, time, steps, collisions })
             }
             None => Ok(()),
         }
     }
 }
 
-/// The limit that `state` has reached, its time and its collisions per particle.
+/// How far a run has come: time, steps, collisions per particle.
+struct Progress {
+    time: f64,
+    steps: u64,
+    collisions: f64,
+}
+
+/// The limit that `state` has reached, and how far it has come.
 fn end_reason<V: Vector>(
     scenario: &Scenario<V>,
     state: &SavedState<'_, V>,
-) -> Option<(&'static str, f64, f64)> {
+) -> Option<(&'static str, Progress)> {
     let simulation = Simulation::resume(scenario, state.clone());
     let reason = simulation.end_reason()?;
-    Some((reason.name(), state.time, state.totals.collisions_per_particle))
+    let (steps, collisions) = (state.totals.steps, state.totals.collisions_per_particle);
+    Some((reason.name(), Progress { time: state.time, steps, collisions }))
 }
 
 /// Whether `--set` may change this key.

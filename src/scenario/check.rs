@@ -303,6 +303,9 @@ mod tests {
         assert_eq!(fact("heap", &[], "expected time"), "about half a minute on one core");
         assert_eq!(fact("cooling", &[], "expected steps"), "about 500");
         assert!(fact("pipe", &[], "expected steps").ends_with("or more"));
+        let far = ["run={collisions_per_particle=4000}", "particles.restitution=0.9"];
+        assert!(fact("cooling", &far, "expected steps").ends_with("or more"));
+        assert!(!fact("cooling", &[], "expected steps").ends_with("or more"));
         let pipe: f64 = fact("pipe", &[], "expected steps").split(' ').nth(1).unwrap().parse().unwrap();
         assert!((4000.0..10_804.0).contains(&pipe), "{pipe}");
         let crossing = ["engine.time_step={crossing=0.5}"];

@@ -17,7 +17,10 @@ const SLOW_AT_REST: f64 = 0.05;
 /// What to say of a run without a cure that collapse is likely to end.
 pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
     let rules = scenario.engine.event_driven;
-    if !scenario.engine.kind.is_event_driven() || rules.cure != Cure::default() {
+    // A contact time is no cure for grains that lie on each other.
+    let is_cured =
+        rules.cure != Cure::default() && (rules.cure.contact_time.is_none() || !cost::settles(scenario));
+    if !scenario.engine.kind.is_event_driven() || is_cured {
         return None;
     }
     // A law that makes slow collisions elastic is a cure in itself.

@@ -52,12 +52,14 @@ fn room<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
 }
 
 /// The engine has what the grains and the limits ask for.
-pub(super) fn abilities(
+pub(super) fn abilities<V: Vector>(
     root: &Section<'_>,
     kind: EngineKind,
     particles: &ParticlesTable,
-    run: Option<RunLimits>,
+    story: &Story<'_, V>,
 ) -> Option<()> {
+    // A single grain never collides.
+    let collides = story.count != Some(1) || !matches!(story.source, Some(None));
     let mut able = Some(());
     let mut refuse = |key: &str, message: String| {
         root.mistake(key, message);
@@ -82,13 +84,15 @@ pub(super) fn abilities(
                 ),
             );
         }
-    } else if let Some(RunLimits { time: None, steps: Some(_), collisions_per_particle: None, rest: None }) =
-        run
+    } else if let Some(RunLimits { time: None, steps: Some(_), collisions_per_particle, rest: None }) =
+        story.run
+        && (collisions_per_particle.is_none() || !collides)
     {
         refuse(
             "run.steps",
             format!(
-                "{name} has no steps, so it would never end; give run.time or run.collisions_per_particle"
+                "{name} has no steps, so it would never end; give run.time{}",
+                if collides { " or run.collisions_per_particle" } else { "" }
             ),
         );
     }
@@ -141,7 +145,7 @@ fn end<V: Vector>(root: &Section<'_>, story: &Story<'_, V>) -> Option<()> {
     if only_collisions && grains == 1 {
         root.mistake(
             "run.collisions_per_particle",
-            "a single grain never collides; give run.time or run.steps",
+            "a single grain never collides; give run.time, or run.steps to an engine that has steps",
         );
         return None;
     }

@@ -7,6 +7,9 @@ use crate::law::boundary::WallKind;
 use crate::law::kinetic_theory::{collision_frequency, cooling_per_collision, haff_time};
 use crate::space::Vector;
 
+/// What a logarithm of the energy falls by until flow is all that is left of it, about.
+const FLOW_ALONE: f64 = 28.0;
+
 /// What kinetic theory says about the initial state; `None` where grains are at rest or none are there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rates {
@@ -108,7 +111,9 @@ pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
     }
     let at_start = steps_at(scenario, starting_speed(scenario))?;
     if scenario.gravity == V::ZERO || matches!(scenario.engine.time_step, TimeStep::Fixed(_)) {
-        return Some(Estimate { least: at_start, most: at_start, open: false });
+        let open = matches!(scenario.engine.time_step, TimeStep::CollisionsPerParticle(_))
+            && flows_in_the_end(scenario);
+        return Some(Estimate { least: at_start, most: at_start, open });
     }
     let falling = steps_at(scenario, falling_speed(scenario))?;
     if falls_for_ever(scenario) {
@@ -117,6 +122,20 @@ pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
     // Grains that settle collide more often than those of the start.
     let open = matches!(scenario.engine.time_step, TimeStep::CollisionsPerParticle(_));
     Some(Estimate { least: at_start.min(falling), most: at_start.max(falling), open })
+}
+
+/// Whether a gas cools so far that grains which still move together no longer move apart: they collide less and less, and
+/// steps are capped by how far they fly.
+fn flows_in_the_end<V: Vector>(scenario: &Scenario<V>) -> bool {
+    let RunLimits { time, collisions_per_particle, .. } = scenario.run;
+    let Some((rates, haff_time)) = rates(scenario).and_then(|rates| Some((rates, rates.haff_time?))) else {
+        return false;
+    };
+    // ln(1 + t/t₀), half of the logarithm of what is left of the energy.
+    let by_time = time.map(|time| (time / haff_time).ln_1p());
+    let by_collisions = collisions_per_particle.map(|limit| limit / (rates.collision_frequency * haff_time));
+    let cooled = [by_time, by_collisions].into_iter().flatten().reduce(f64::min);
+    cools(scenario) && cooled.is_some_and(|cooled| 2.0 * cooled > FLOW_ALONE)
 }
 
 /// Steps until the first limit while the largest speed is `speed`, or cools down from it.

@@ -155,6 +155,13 @@ pub enum InitialPositions {
     Log(std::path::PathBuf),
 }
 
+impl InitialPositions {
+    /// Whether they come from a log.
+    pub fn is_log(&self) -> bool {
+        matches!(self, InitialPositions::Log(_))
+    }
+}
+
 /// How grains move at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InitialVelocities {

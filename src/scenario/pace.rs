@@ -159,12 +159,6 @@ mod tests {
     }
 
     #[test]
-    fn a_free_gas_may_step_as_far_as_it_likes() {
-        assert!(scenario("clustering", &["engine.time_step.fixed=1000"]).is_ok());
-        assert!(scenario("cooling", &["engine.time_step.fixed=1000"]).is_err());
-    }
-
-    #[test]
     fn falling_speeds_are_those_of_free_fall() {
         assert!((falling_speed(&scenario("heap", &[]).unwrap()) - 20.0_f64.sqrt()).abs() < 1e-12);
         let box_of_disks = scenario("sedimentation", &[]).unwrap();

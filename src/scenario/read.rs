@@ -46,7 +46,7 @@ pub(super) fn read<V: Vector>(root: &Section<'_>, name: &str, source_text: Strin
     };
     let consistent = consistency::check(root, &story);
     let initial = resolve_initial(root, initial, &story);
-    let able = engine.kind.map_or(Some(()), |kind| consistency::abilities(root, kind, &particles, run));
+    let able = engine.kind.map_or(Some(()), |kind| consistency::abilities(root, kind, &particles, &story));
     let (grid_origin, grid_size, cells) = cut(root, &engine, &particles, &story)?;
     let (matter, count) = (consistent.and(able).and(particles.matter)?, count?);
     checked(

@@ -21,6 +21,7 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> V
         resolution::capped_step(scenario),
         resources::recordings(scenario),
         method::fields(scenario),
+        method::measures(scenario).into_iter().collect(),
         resources::patience(scenario),
         resources::memory(scenario, machine),
         resources::disk(scenario, machine),
@@ -69,6 +70,13 @@ mod tests {
             assert!(!warned("cooling", &sets).contains("once the gas clusters"), "{other}");
         }
         assert!(!warned("cooling", &long).contains("once the gas clusters"));
+    }
+
+    #[test]
+    fn measures_that_the_scenario_does_not_have_are_said() {
+        let said = warned("cooling", &["record.measures=[\"heap\", \"energy\"]"]);
+        assert!(said.contains("record.measures names heap, for which"), "{said}");
+        assert!(!warned("heap", &["record.measures=[\"heap\"]"]).contains("record.measures"));
     }
 
     #[test]

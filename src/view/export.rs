@@ -13,6 +13,7 @@ use crate::placing::write_whole;
 use crate::record::contents::Frame;
 use crate::record::error::LogError;
 use crate::record::index::Moment;
+use crate::record::is_log;
 use crate::report::scene::speed;
 
 /// What frames take in all, before the third that base64 adds [byte].
@@ -44,7 +45,7 @@ pub struct Exported {
 /// Writes the page of `logs` to `path`; what stands there is replaced only with `force`, once the new page is complete.
 /// What was kept of each log.
 pub fn export(logs: &[ViewedLog], path: &Path, force: bool) -> Result<Vec<Exported>, ViewError> {
-    if path.exists() && (!force || path.is_dir()) {
+    if path.exists() && (!force || path.is_dir() || is_log(path)) {
         return Err(ViewError::Exists(path.to_owned()));
     }
     let (mut parts, mut packs, mut kept) = (Vec::new(), Vec::new(), Vec::new());

@@ -75,11 +75,29 @@ fn a_run_that_is_killed_leaves_a_log_that_reads() {
 #[test]
 fn a_second_signal_ends_the_program_at_once() {
     let place = Place::new();
+    // Nobody looks for signals while a million grains are compressed.
+    let sets =
+        ["domain.size=[1000.0, 1000.0]", "particles.volume_fraction=0.8", "initial.positions=compressed"];
+    let sets = sets.map(|set| ["--set", set]).concat();
+    let child = place.command(&[&["run", "cooling", "--out", "run"], &sets[..]].concat()).spawn().unwrap();
+    for _ in 0..2 {
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        send("-TERM", &child);
+    }
+    let said = Said::of(&child.wait_with_output().unwrap());
+    assert_eq!(said.code, Some(130), "{said:?}");
+    assert!(!place.path("run").exists());
+}
+
+#[test]
+fn a_signal_that_comes_twice_in_a_row_counts_once() {
+    let place = Place::new();
     let child = place.begun();
     send("-TERM", &child);
     send("-TERM", &child);
     let said = Said::of(&child.wait_with_output().unwrap());
     assert_eq!(said.code, Some(130), "{said:?}");
+    assert!(place.path("run/summary.json").is_file() && place.path("run/report.html").is_file());
 }
 
 #[test]

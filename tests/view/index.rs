@@ -113,14 +113,8 @@ proptest! {
     }
 }
 
-/// Two gigabytes of frames that no compression makes smaller; as many frames as `GRAINFLOW_FRAMES` says.
-#[test]
-#[ignore = "writes 2 GB; cargo test --release --test view -- --ignored --nocapture"]
-fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("log.mcap");
-    let mut log = LogWriter::create(&path, &header()).unwrap();
-    let recordings: u64 = std::env::var("GRAINFLOW_FRAMES").map_or(6000, |frames| frames.parse().unwrap());
+/// As many `recordings`, of 20 000 grains anywhere at any speed.
+fn write_noise(log: &mut LogWriter, recordings: u64) {
     let points = 20_000_u64;
     // A linear congruential generator: any bits will do.
     let mut state = 1_u64;
@@ -148,6 +142,17 @@ fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
         })
         .unwrap();
     }
+}
+
+/// Two gigabytes of frames that no compression makes smaller; as many frames as `GRAINFLOW_FRAMES` says.
+#[test]
+#[ignore = "writes 2 GB; cargo test --release --test view -- --ignored --nocapture"]
+fn a_large_log_is_opened_and_scrubbed_in_less_than_a_second() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    let mut log = LogWriter::create(&path, &header()).unwrap();
+    let recordings: u64 = std::env::var("GRAINFLOW_FRAMES").map_or(6000, |frames| frames.parse().unwrap());
+    write_noise(&mut log, recordings);
     log.finish().unwrap();
     let length = fs::metadata(&path).unwrap().len();
     let begun = Instant::now();

@@ -68,7 +68,7 @@ impl CompareError {
     /// Whether the input is at fault, rather than a run.
     pub fn is_bad_input(&self) -> bool {
         match self {
-            CompareError::Folder(FolderError::Exists { .. } | FolderError::NotAFolder { .. }) => true,
+            CompareError::Folder(error) => error.is_bad_input(),
             CompareError::Scenario(_) | CompareError::Logs(_) | CompareError::Log(_) => true,
             CompareError::Run(error) => error.is_bad_input(),
             _ => false,

@@ -37,7 +37,7 @@ impl Variation {
         }
         let variation = Variation { keys };
         for k in 1..variation.len() {
-            if let Some(twin) = (0..k).find(|&j| variation.settings(j).eq(variation.settings(k))) {
+            if let Some(twin) = (0..k).find(|&j| variation.is_same(j, k)) {
                 let value = &variation.leader().values[k];
                 return Err(format!(
                     "value {} is value {} again ({value}); leave it out, or repeat with --replicas",
@@ -52,6 +52,12 @@ impl Variation {
     /// How many values each key has.
     pub(super) fn len(&self) -> usize {
         self.keys[0].values.len()
+    }
+
+    /// Whether two places have the same values, however they are written.
+    fn is_same(&self, one: usize, other: usize) -> bool {
+        let same = |a: &str, b: &str| a == b || number(a).is_some_and(|a| Some(a) == number(b));
+        self.settings(one).zip(self.settings(other)).all(|(one, other)| same(one.1, other.1))
     }
 
     /// Paths with their values at `place`.
@@ -217,6 +223,7 @@ mod tests {
         assert!(wrong("a=[]").contains("no values"));
         assert!(wrong("a=[1,,2]").contains("value 2"));
         assert!(wrong("a=[1,2,1]").contains("value 3 is value 1 again"));
+        assert!(wrong("a=[0.9,2,0.90]").contains("value 3 is value 1 again"));
         assert!(wrong("a=[1").contains("no partner"));
     }
 }

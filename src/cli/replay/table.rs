@@ -23,6 +23,10 @@ impl Work<'_> {
         }
         let metadata = log.metadata.clone();
         let tables = self.wanted(log, options)?;
+        if self.is_part && tables.series.is_empty() && tables.profiles.is_empty() {
+            let words = self.selection.words();
+            return Err(Failure::Input(format!("there is no recording {words}")));
+        }
         if let Some(file) = &options.series {
             write_file(file, &tables.series_text(&metadata), self.force, "--series")?;
         }

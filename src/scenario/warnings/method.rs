@@ -55,3 +55,18 @@ pub(super) fn fields<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     };
     (!names.is_empty()).then(warning).into_iter().collect()
 }
+
+/// Measures that the scenario does not have.
+pub(super) fn measures<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
+    let wanted = scenario.record.measures.as_deref()?;
+    let taken = crate::observe::measures(&scenario.setting(), Some(wanted));
+    let lacking = wanted.iter().filter(|name| taken.iter().all(|measure| measure.name() != name.as_str()));
+    let names: Vec<&str> = lacking.map(String::as_str).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "record.measures names {}, for which the scenario lacks the walls, the gravity or the periodic axis that it needs: \
+             nothing is measured of that",
+            names.join(" and ")
+        )
+    })
+}
