@@ -20,11 +20,11 @@ pub(super) struct CheckArguments {
 pub(super) fn check(arguments: &CheckArguments) -> Exit {
     match arguments.input.load() {
         Ok(scenario) => {
-            println!("{}", check_on(&scenario, Machine::holding(Path::new("out"))));
             if let Err(error) = check_beginning(&scenario) {
                 complain(&error);
                 return Exit::BadInput;
             }
+            println!("{}", check_on(&scenario, Machine::holding(Path::new("out"))));
             Exit::Done
         }
         Err(error) => {

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use crate::place::Place;
 
@@ -24,6 +25,16 @@ const FILES: &[Refusal] = &[
         &["is empty: the run that should have written it"],
     ),
     ("run cooling --set initial.positions.log=none.mcap", &["cannot read the log none.mcap", "No such file"]),
+    (
+        "check cooling --set initial.positions.log=none.mcap",
+        &["cannot read the log none.mcap", "No such file"],
+    ),
+    (
+        "run cooling --set initial.positions.log=cut.mcap",
+        &["cut.mcap holds no complete state, from which grains could be taken"],
+    ),
+    ("run cooling --out folder --force", &["folder holds no run, comparison or calibration"]),
+    ("run cooling --out . --force", &["is the folder that you are in, or holds it"]),
     (
         "run cooling --set engine.impact_parameter.table=binary.toml",
         &["binary.toml is not UTF-8 text; a table is"],
@@ -119,6 +130,15 @@ const SETS: &[Refusal] = &[
         &["\"energi\" is not a measure; did you mean `energy`?"],
     ),
     ("run heap --set gravity=[0,0]", &["gravity"]),
+    (
+        "run cooling --engine cba --set engine.time_step.fixed=1e6",
+        &["a grain would collide", "2 times is the most; give at most 1.11"],
+    ),
+    (
+        "run cooling --engine event-driven --set particles.count=1 --set run.steps=5",
+        &["event-driven has no steps, so it would never end; give run.time"],
+    ),
+    ("run cooling --set particles.count=1", &["a single grain never collides; give run.time"]),
     ("run heap --set boundary.y.upper=0", &["boundary.y.upper"]),
 ];
 
@@ -141,6 +161,7 @@ const VARIATIONS: &[Refusal] = &[
         "sweep shear --vary 'a=[1,1]'",
         &["value 2 is value 1 again (1); leave it out, or repeat with --replicas"],
     ),
+    ("sweep shear --vary 'a=[0.9,0.90]'", &["value 2 is value 1 again (0.90)"]),
     ("sweep shear --vary 'a=linear(0,1)'", &["(0,1) is no range", "a count from 2 to 1000"]),
     ("sweep shear --vary 'a=linear(0,1,1e9)'", &["a count from 2 to 1000"]),
     ("sweep shear --vary 'a=log(0,1,3)'", &["needs ends of the same sign, not 0; use linear(0,1,3)"]),
@@ -160,6 +181,9 @@ fn assert_refused(refusals: &[Refusal]) {
     fs::write(place.path("huge.toml"), vec![b'#'; (1 << 20) + 1]).unwrap();
     fs::write(place.path("noise.mcap"), [7; 3000]).unwrap();
     fs::create_dir(place.path("folder")).unwrap();
+    fs::write(place.path("folder/notes.txt"), "mine").unwrap();
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/format-1/hsmc-2d.mcap");
+    fs::write(place.path("cut.mcap"), &fs::read(golden).unwrap()[..7000]).unwrap();
     let names = || -> BTreeSet<_> {
         fs::read_dir(place.folder()).unwrap().map(|entry| entry.unwrap().file_name()).collect()
     };
