@@ -14,7 +14,7 @@ pub struct HomogeneousCooling {
     pub temperature: f64,
     /// t₀: time in which the temperature falls to a quarter [time].
     pub time: f64,
-    /// γ: the temperature falls by e in this many collisions per particle, inverted.
+    /// γ: ln T falls by this much with each collision per particle [1].
     pub per_collision: f64,
 }
 
@@ -37,22 +37,22 @@ impl HomogeneousCooling {
         }
     }
 
-    /// T at `time`.
+    /// T at `time` [energy; time].
     pub fn at_time(&self, time: f64) -> f64 {
         self.temperature / (1.0 + time / self.time).powi(2)
     }
 
-    /// T after so many collisions per particle, 2C/N.
+    /// T after so many collisions per particle, 2C/N [energy].
     pub fn after_collisions(&self, collisions: f64) -> f64 {
         self.temperature * (-self.per_collision * collisions).exp()
     }
 
-    /// Collisions per particle up to `time`: what both laws together say, (2/γ) ln(1 + t/t₀).
+    /// Collisions per particle up to `time` [1; time]: what both laws together say, (2/γ) ln(1 + t/t₀).
     pub fn collisions_until(&self, time: f64) -> f64 {
         2.0 / self.per_collision * (time / self.time).ln_1p()
     }
 
-    /// Collisions per particle and time at `time`.
+    /// Collisions per particle and time at `time` [1/time; time].
     pub fn collision_frequency(&self, time: f64) -> f64 {
         2.0 / (self.per_collision * (self.time + time))
     }

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use crate::matter::grain::Grain;
 use crate::space::Vector;
 
-/// Collisions per grain and time of a Maxwell gas: f_E = D 2^{D−1} ν g √(T/m)/(√π a), a = d/2 (Miller 2004, 4.33).
+/// Collisions per grain and time of a Maxwell gas at `temperature` [1/time; energy]: f_E = D 2^{D−1} ν g √(T/m)/(√π a), a = d/2 (Miller 2004, 4.33).
 ///
 /// `contact_correlation` is g: [`Vector::contact_correlation`] of ν for Enskog theory, 1 for the Boltzmann gas.
 pub fn collision_frequency<V: Vector>(
@@ -30,7 +30,7 @@ pub fn cooling_per_collision<V: Vector>(restitution: f64) -> f64 {
     (1.0 - restitution * restitution) / (2.0 * V::DIMENSION as f64)
 }
 
-/// Haff's time t₀ = 2D/((1 − r²) f_E(0)) of T(t) = T₀ (1 + t/t₀)⁻², for a Maxwell gas (Haff 1983; Miller 2004, 4.36).
+/// Haff's time [time] t₀ = 2D/((1 − r²) f_E(0)) of T(t) = T₀ (1 + t/t₀)⁻², for a Maxwell gas (Haff 1983; Miller 2004, 4.36).
 pub fn haff_time<V: Vector>(restitution: f64, collision_frequency: f64) -> f64 {
     2.0 * V::DIMENSION as f64 / ((1.0 - restitution * restitution) * collision_frequency)
 }
@@ -128,13 +128,13 @@ pub fn maxwell_density(scaled_velocity: f64) -> f64 {
     libm::exp(-0.5 * scaled_velocity * scaled_velocity) / (2.0 * PI).sqrt()
 }
 
-/// Probability density of the impact parameter |b|/d under molecular chaos: 1 for disks, 2b for spheres.
+/// Probability density [1] of the impact parameter |b|/d under molecular chaos: 1 for disks, 2b for spheres.
 pub fn chaotic_impact_density<V: Vector>(impact_parameter: f64) -> f64 {
     let power = V::DIMENSION as i32 - 2;
     f64::from(power + 1) * impact_parameter.powi(power)
 }
 
-/// Mean free path of a Maxwell gas: mean speed over collision frequency.
+/// Mean free path of a Maxwell gas [length]: mean speed over collision frequency.
 ///
 /// 2D πd/(8√2 νg), 3D d/(6√2 νg); the mean speed is the mean relative speed over √2.
 pub fn mean_free_path<V: Vector>(grain: Grain, volume_fraction: f64) -> f64 {

@@ -1,5 +1,5 @@
 //! What a run is made of: a checked scenario. Only this module makes one,
-//! so to hold a `Scenario` is the proof that it was checked.
+//! so a `Scenario` that nobody has changed since is checked.
 
 mod bound;
 pub mod builtin;

@@ -1,7 +1,7 @@
 //! A log in the browser: a local page with a player, plots that follow it, and a second log beside it in step.
 //!
 //! [`Server`] listens on the loopback device alone and gives [`Site::respond`] the head of every request; that is a function
-//! from bytes to a [`Response`], which knows five addresses and touches no file but the logs that were opened.
+//! from bytes to a [`Response`], which knows four addresses and touches no file but the logs that were opened.
 //! [`export`] writes the same page with frames in it, for those who have no server.
 
 mod clusters;
