@@ -79,12 +79,12 @@ fn many_small_grains_make_the_profile_exact() {
     assert!(!is_straight(&slow, &[1.0], 0.005));
 }
 
-/// F/v² is the same within 10 % for all pairs (v, F).
+/// F/v² is the same for all pairs (v, F), within four times the 1.5 % by which runs of different seeds differ.
 fn is_bagnold(stresses: &[(f64, f64)]) -> bool {
     let reduced: Vec<f64> = stresses.iter().map(|(speed, stress)| stress / (speed * speed)).collect();
     println!("F/v²: {reduced:?}");
     let centre = mean(&reduced).unwrap();
-    reduced.iter().all(|f| (f / centre - 1.0).abs() <= 0.1)
+    reduced.iter().all(|f| (f / centre - 1.0).abs() <= 0.06)
 }
 
 fn stresses(sets: &[&str]) -> Vec<(f64, f64)> {
@@ -105,20 +105,28 @@ fn the_stress_grows_as_the_square_of_the_speed() {
     assert!(!is_bagnold(&stresses(&[law, walls[0], walls[1], "run.collisions_per_particle=200"])));
 }
 
-/// F·H²/v² = 2.1 at this cell size (Navier–Stokes–Enskog: 2.12), within a quarter.
-fn has_the_viscosity(runs: &[BTreeMap<String, f64>]) -> bool {
-    let reduced: Vec<f64> =
-        column(runs, "wall_shear_stress").iter().map(|stress| stress * HEIGHT * HEIGHT).collect();
+/// F·H²/v².
+fn reduced_stresses(runs: &[BTreeMap<String, f64>]) -> Vec<f64> {
+    column(runs, "wall_shear_stress").iter().map(|stress| stress * HEIGHT * HEIGHT).collect()
+}
+
+/// F·H²/v² = 2.12, as Navier–Stokes–Enskog theory says. Layers at the walls, with their jump of velocity, take 2 % of it, and
+/// cells of a mean free path add some: 5 % in all.
+fn has_the_viscosity(reduced: &[f64]) -> bool {
     println!("F·H²/v²: {reduced:.3?}");
-    agrees(&reduced, 2.1, 0.25 * 2.1)
+    agrees(reduced, 2.12, 0.05 * 2.12)
 }
 
 #[test]
 fn the_stress_is_that_of_enskog_theory() {
-    assert!(has_the_viscosity(&flows(1.0, &[])));
+    let reduced = reduced_stresses(&flows(1.0, &[]));
+    assert!(has_the_viscosity(&reduced));
+    // A collisional stress that is 15 % too large is found out.
+    let larger: Vec<f64> = reduced.iter().map(|stress| 1.15 * stress).collect();
+    assert!(!has_the_viscosity(&larger));
     // Collisions at the rate of a dilute gas, or across cells longer than the mean free path.
-    assert!(!has_the_viscosity(&flows(1.0, &["engine.kind=dsmc"])));
-    assert!(!has_the_viscosity(&flows(1.0, &["engine.cell_size=8.0"])));
+    assert!(!has_the_viscosity(&reduced_stresses(&flows(1.0, &["engine.kind=dsmc"]))));
+    assert!(!has_the_viscosity(&reduced_stresses(&flows(1.0, &["engine.cell_size=8.0"]))));
 }
 
 /// Position and velocity of every grain after 300 steps, in the order of their identities.
