@@ -11,21 +11,9 @@ pub(super) fn write(to: &mut dyn Write, moment: &Moment, with_header: bool) -> i
         writeln!(to, "frame,time,id,species,x,y,z,vx,vy,vz,radius{turning}")?;
     }
     for row in 0..moment.len() {
-        write!(
-            to,
-            "{},{:?},{},{},{},{},{:?}",
-            moment.number,
-            moment.time,
-            moment.ids[row],
-            u32::from(moment.species[row]) + 1,
-            moment.vector_text(moment.positions[row], ","),
-            moment.vector_text(moment.velocities[row], ","),
-            moment.radii[row]
-        )?;
-        match &moment.spins {
-            Some(spins) => writeln!(to, ",{}", moment.vector_text(spins[row], ","))?,
-            None => writeln!(to)?,
-        }
+        let species = u32::from(moment.species[row]) + 1;
+        let lead = format!("{},{:?},{},{species}", moment.number, moment.time, moment.ids[row]);
+        moment.write_row(to, row, &lead, ",")?;
     }
     Ok(())
 }

@@ -29,19 +29,8 @@ pub(super) fn write(
     let turning = if moment.spins.is_some() { " omegax omegay omegaz" } else { "" };
     writeln!(to, "ITEM: ATOMS id type x y z vx vy vz radius{turning}")?;
     for row in 0..moment.len() {
-        write!(
-            to,
-            "{} {} {} {} {:?}",
-            moment.ids[row],
-            u32::from(moment.species[row]) + 1,
-            moment.vector_text(moment.positions[row], " "),
-            moment.vector_text(moment.velocities[row], " "),
-            moment.radii[row]
-        )?;
-        match &moment.spins {
-            Some(spins) => writeln!(to, " {}", moment.vector_text(spins[row], " "))?,
-            None => writeln!(to)?,
-        }
+        let lead = format!("{} {}", moment.ids[row], u32::from(moment.species[row]) + 1);
+        moment.write_row(to, row, &lead, " ")?;
     }
     Ok(())
 }

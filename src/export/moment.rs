@@ -1,5 +1,7 @@
 //! The grains at one time, as every format writes them.
 
+use std::io::{self, Write};
+
 use crate::record::contents::Frame;
 use crate::record::state::SavedState;
 use crate::replay::kinds::Kinds;
@@ -105,6 +107,23 @@ impl Moment {
     /// `vector` in that form, with `separator` in between.
     pub(super) fn vector_text(&self, vector: [f64; 3], separator: &str) -> String {
         vector.map(|component| self.text(component)).join(separator)
+    }
+
+    /// The line of the grain in `row`: what `lead` says, position, velocity, radius, and spin where there is one.
+    pub(super) fn write_row(
+        &self,
+        to: &mut dyn Write,
+        row: usize,
+        lead: &str,
+        separator: &str,
+    ) -> io::Result<()> {
+        let place = self.vector_text(self.positions[row], separator);
+        let velocity = self.vector_text(self.velocities[row], separator);
+        write!(to, "{lead}{separator}{place}{separator}{velocity}{separator}{:?}", self.radii[row])?;
+        match &self.spins {
+            Some(spins) => writeln!(to, "{separator}{}", self.vector_text(spins[row], separator)),
+            None => writeln!(to),
+        }
     }
 
     /// What is to be said of a moment that is not all of the gas, or nothing.

@@ -26,19 +26,8 @@ pub(super) fn write(to: &mut dyn Write, moment: &Moment, volume: &Volume) -> io:
         None => writeln!(to, " grains={}", moment.grains)?,
     }
     for row in 0..moment.len() {
-        write!(
-            to,
-            "{} {} {} {} {:?}",
-            name(moment.species[row]),
-            moment.ids[row],
-            moment.vector_text(moment.positions[row], " "),
-            moment.vector_text(moment.velocities[row], " "),
-            moment.radii[row]
-        )?;
-        match &moment.spins {
-            Some(spins) => writeln!(to, " {}", moment.vector_text(spins[row], " "))?,
-            None => writeln!(to)?,
-        }
+        let lead = format!("{} {}", name(moment.species[row]), moment.ids[row]);
+        moment.write_row(to, row, &lead, " ")?;
     }
     Ok(())
 }

@@ -41,18 +41,8 @@ pub enum ResumeError {
     )]
     Change(String),
     /// Another version made the bits.
-    #[error(
-        "the log {} was made with numerics {found} (grainflow {version}), and this is grainflow {} with numerics {}, whose \
-         trajectories have other bits: resume it with grainflow {version}", path.display(), env!("CARGO_PKG_VERSION"), NUMERICS
-    )]
-    Numerics {
-        /// The log.
-        path: PathBuf,
-        /// Its numerics.
-        found: String,
-        /// The version that wrote it.
-        version: String,
-    },
+    #[error("{other}: resume it with grainflow {version}", other = .0, version = .0.version)]
+    Numerics(#[from] OtherNumerics),
     /// The scenario in the log is another one.
     #[error(
         "the scenario in the log {} is not the one that the log was begun with: its text has another SHA-256 than the \
@@ -232,12 +222,28 @@ pub(super) fn scenario_of(
         .map_err(|error| ScenarioError { file: format!("the scenario in {}", log.display()), ..error })
 }
 
-fn check_numerics(log: &Path, history: &History) -> Result<(), ResumeError> {
+/// A log of a program that gives trajectories other bits.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the log {} was made with numerics {found} (grainflow {version}), and this is grainflow {} with numerics {NUMERICS}, whose \
+     trajectories have other bits", path.display(), env!("CARGO_PKG_VERSION")
+)]
+pub struct OtherNumerics {
+    /// The log.
+    pub path: PathBuf,
+    /// Its numerics.
+    pub found: String,
+    /// The version that wrote it.
+    pub version: String,
+}
+
+/// Whether this program gives the run of `log` the same bits.
+pub(super) fn check_numerics(log: &Path, history: &History) -> Result<(), OtherNumerics> {
     if history.value("numerics") == NUMERICS.to_string() {
         return Ok(());
     }
     let (found, version) = (history.value("numerics").to_owned(), history.value("version").to_owned());
-    Err(ResumeError::Numerics { path: log.to_owned(), found, version })
+    Err(OtherNumerics { path: log.to_owned(), found, version })
 }
 
 /// Where a run goes on from.

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use super::rerun::{Reached, Rerun};
-use super::resume::scenario_of;
+use super::resume::{OtherNumerics, check_numerics, scenario_of};
 use super::state_difference::{first_difference, grain_in_picture, said, same};
-use super::{Listener, NUMERICS, RunError};
+use super::{Listener, RunError};
 use crate::matter::state_hash::state_hash;
 use crate::record::checkpoints::{Checkpoint, each_checkpoint};
 use crate::record::contents::Frame;
@@ -33,18 +33,8 @@ pub enum VerifyError {
     #[error(transparent)]
     Run(#[from] RunError),
     /// Another version made the bits.
-    #[error(
-        "the log {} was made with numerics {found} (grainflow {version}), and this is grainflow {} with numerics {}, whose \
-         trajectories have other bits: verify it with grainflow {version}", path.display(), env!("CARGO_PKG_VERSION"), NUMERICS
-    )]
-    Numerics {
-        /// The log.
-        path: PathBuf,
-        /// Its numerics.
-        found: String,
-        /// The version that wrote it.
-        version: String,
-    },
+    #[error("{other}: verify it with grainflow {version}", other = .0, version = .0.version)]
+    Numerics(#[from] OtherNumerics),
     /// Parts of the scenario are in other dimensions.
     #[error("the log {} has parts in two and in three dimensions: it is not as it was written", .0.display())]
     Dimensions(PathBuf),
@@ -102,10 +92,7 @@ pub enum Verdict {
 pub fn verify(path: &Path, stop: &AtomicBool, tell: Listener<'_>) -> Result<Verdict, VerifyError> {
     let log = log_at(path);
     let history = History::read(&log)?;
-    if history.value("numerics") != NUMERICS.to_string() {
-        let (found, version) = (history.value("numerics").to_owned(), history.value("version").to_owned());
-        return Err(VerifyError::Numerics { path: log, found, version });
-    }
+    check_numerics(&log, &history)?;
     let texts = history.earlier.iter().map(|part| part.scenario.as_str()).chain([history.scenario.as_str()]);
     let mut parts = Vec::new();
     for text in texts {
