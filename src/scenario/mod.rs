@@ -69,6 +69,39 @@ fn parse_as(
     text: &str,
     overrides: &Overrides,
 ) -> Result<AnyScenario, ScenarioError> {
+    let read = |overrides: &Overrides| read_as(file, folder, name, text, overrides);
+    read(overrides).map_err(|error| blamed(error, overrides, read))
+}
+
+/// A mistake that goes when one option is left out, and leaves no other behind, is that option's: the line of the file where it
+/// stands is right without it.
+fn blamed(
+    mut error: ScenarioError,
+    overrides: &Overrides,
+    read: impl Fn(&Overrides) -> Result<AnyScenario, ScenarioError>,
+) -> ScenarioError {
+    for (place, others) in overrides.each_left_out() {
+        let left = read(&others).err().map_or_else(Vec::new, |error| error.mistakes);
+        if left.len() >= error.mistakes.len() || !left.iter().all(|mistake| error.mistakes.contains(mistake))
+        {
+            continue;
+        }
+        for mistake in error.mistakes.iter_mut().filter(|mistake| !left.contains(mistake)) {
+            if !matches!(mistake.place, Place::Option { .. }) {
+                mistake.place = place.clone();
+            }
+        }
+    }
+    ScenarioError::sorted(&error.file, error.mistakes)
+}
+
+fn read_as(
+    file: &str,
+    folder: &Path,
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+) -> Result<AnyScenario, ScenarioError> {
     let original = document(file, text)?;
     if original.as_table().is_empty() && overrides.sets.is_empty() {
         let message = "holds no scenario; `grainflow scenarios show shear` prints one to start from";

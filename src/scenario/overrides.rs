@@ -26,7 +26,21 @@ struct Setting {
     value: Value,
 }
 
+/// How to name the `--set` of this place.
+fn set_name(order: usize, text: &str) -> String {
+    format!("--set #{} '{text}'", order + 1)
+}
+
 impl Overrides {
+    /// The place of each `--set`, and all options but that one.
+    pub(super) fn each_left_out(&self) -> impl Iterator<Item = (Place, Overrides)> {
+        self.sets.iter().enumerate().map(|(order, text)| {
+            let mut others = self.clone();
+            others.sets.remove(order);
+            (Place::Option { order, name: set_name(order, text) }, others)
+        })
+    }
+
     /// Changes `document`; returns what was changed and which options are wrong.
     pub(super) fn apply(&self, document: &mut DocumentMut) -> (Vec<Change>, Vec<Mistake>) {
         let (mut changes, mut mistakes) = (Vec::new(), Vec::new());
@@ -42,12 +56,8 @@ impl Overrides {
 
     /// The options by name, in the order in which they apply, with what they ask for.
     fn settings(&self) -> Vec<(String, Result<Setting, String>)> {
-        let mut settings: Vec<_> = self
-            .sets
-            .iter()
-            .enumerate()
-            .map(|(k, text)| (format!("--set #{} '{text}'", k + 1), Setting::parse(text)))
-            .collect();
+        let mut settings: Vec<_> =
+            self.sets.iter().enumerate().map(|(k, text)| (set_name(k, text), Setting::parse(text))).collect();
         if let Some(engine) = &self.engine {
             let names = vec!["engine".to_owned(), "kind".to_owned()];
             let setting = Setting { names, component: None, value: engine.as_str().into() };
@@ -134,6 +144,9 @@ fn split_component(path: &str) -> Result<(&str, Option<usize>), String> {
     let index = rest.strip_suffix(']').and_then(|digits| digits.trim().parse().ok());
     match index {
         Some(index) => Ok((name.trim_end(), Some(index))),
+        None if rest.contains("].") => Err(format!(
+            "`{path}`: one value of a list of tables cannot be set alone; set the list, as in {name}=[{{ … }}, {{ … }}]"
+        )),
         None => Err(format!("`{path}` is not a component; write {name}[0] for the first")),
     }
 }

@@ -231,6 +231,9 @@ impl<'a> Section<'a> {
             self.reader.misspelt.borrow_mut().push(KeyPath::of([key]));
             return format!("; `{key}` belongs at the top of the file, above the first [table]");
         }
+        if keys.contains(&"wall") && schema::WALL.contains(&key) {
+            return format!("; a wall of this kind has none: it has {}", keys.join(" and "));
+        }
         match schema::TABLES.iter().find(|(table, keys)| *table != here && keys.contains(&key)) {
             Some((table, _)) => format!("; `{key}` belongs into [{table}]"),
             None => format!("; known here: {}", keys.join(", ")),

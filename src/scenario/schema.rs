@@ -62,6 +62,9 @@ pub(super) const PARTICLES: &[&str] = &[
     "species",
 ];
 /// `[[particles.species]]`.
+/// Keys of walls of all kinds.
+pub(super) const WALL: &[&str] =
+    &["wall", "restitution", "velocity", "reversal_probability", "amplitude", "frequency"];
 pub(super) const SPECIES: &[&str] = &["diameter", "mass", "share"];
 /// `particles.restitution`, where it is a table.
 pub(super) const RESTITUTION: &[&str] = &["law", "r0", "v0"];

@@ -120,6 +120,18 @@ const SETS: &[Refusal] = &[
     ("run shear --set particles.mass=0", &["0 is out of bounds; give a number above 0"]),
     ("run shear --set run.time=-1", &["-1 is out of bounds; give a number above 0"]),
     ("run shear --set 'domain.size[5]=3'", &["there is no component 5; the list has 2, counted from 0"]),
+    (
+        "run shear --set 'particles.species[0].share=2'",
+        &["one value of a list of tables cannot be set alone; set the list, as in particles.species=[{"],
+    ),
+    (
+        "run shear --set boundary.y.lower.wall=smooth",
+        &[
+            "--set #1",
+            "boundary.y.lower.velocity",
+            "a wall of this kind has none: it has wall and restitution",
+        ],
+    ),
     ("run shear --set 'domain.size[-1]=3'", &["is not a component; write domain.size[0] for the first"]),
     ("run shear --set domain=3", &["domain: must be a table, not the number 3; write [domain]"]),
     ("run shear --set dimension=4", &["4 is out of bounds; give 2 (disks) or 3 (spheres)"]),
@@ -138,7 +150,12 @@ const SETS: &[Refusal] = &[
         "run cooling --engine event-driven --set particles.count=1 --set run.steps=5",
         &["event-driven has no steps, so it would never end; give run.time"],
     ),
-    ("run cooling --set particles.count=1", &["a single grain never collides; give run.time"]),
+    (
+        "run cooling --set seed=2 --set particles.count=1",
+        &[
+            "--set #2 'particles.count=1': run.collisions_per_particle: a single grain never collides; give run.time",
+        ],
+    ),
     ("run heap --set boundary.y.upper=0", &["boundary.y.upper"]),
 ];
 
@@ -160,6 +177,10 @@ const VARIATIONS: &[Refusal] = &[
     (
         "sweep shear --vary 'a=[1,1]'",
         &["value 2 is value 1 again (1); leave it out, or repeat with --replicas"],
+    ),
+    (
+        "sweep cooling --vary 'particles.count=[1,2]'",
+        &["--vary #1 'particles.count=1': run.collisions_per_particle: a single grain never collides"],
     ),
     ("sweep shear --vary 'a=[0.9,0.90]'", &["value 2 is value 1 again (0.90)"]),
     ("sweep shear --vary 'a=linear(0,1)'", &["(0,1) is no range", "a count from 2 to 1000"]),

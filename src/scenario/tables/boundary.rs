@@ -105,8 +105,6 @@ enum WallName {
 }
 
 fn read_wall<V: Vector>(axis_table: &Section<'_>, side: &str, axis: usize) -> Option<WallTable<V>> {
-    const EVERY: &[&str] =
-        &["wall", "restitution", "velocity", "reversal_probability", "amplitude", "frequency"];
     let names = [
         ("smooth", WallName::Smooth),
         ("rough", WallName::Rough),
@@ -117,7 +115,7 @@ fn read_wall<V: Vector>(axis_table: &Section<'_>, side: &str, axis: usize) -> Op
     let name = axis_table.item(side).and_then(|item| item.as_table_like()?.get("wall")?.as_str());
     let known = name.and_then(|name| names.iter().find(|(known, _)| *known == name));
     let keys: &[&str] = match known {
-        None => EVERY,
+        None => schema::WALL,
         Some((_, WallName::Smooth)) => &["wall", "restitution"],
         Some((_, WallName::Rough)) => &["wall", "restitution", "velocity"],
         Some((_, WallName::Statistical)) => &["wall", "restitution", "reversal_probability"],
