@@ -35,7 +35,7 @@ pub(super) struct CalibrateArguments {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
 
-    /// Replace what the folder holds once the calibration is complete
+    /// Replace the calibration that the folder holds once the new one is complete
     #[arg(long)]
     force: bool,
 

@@ -56,7 +56,7 @@ pub(super) struct CompareArguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace what the folder holds once the new comparison is complete
+    /// Replace the comparison that the folder holds once the new one is complete
     #[arg(long)]
     force: bool,
 

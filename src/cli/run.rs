@@ -41,7 +41,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace what the folder holds once the new run is complete
+    /// Replace the run that the folder holds once the new one is complete
     #[arg(long)]
     force: bool,
 
