@@ -22,10 +22,10 @@ use serde_json::{Map, Value};
 use crate::observe::measure::Place;
 use crate::observe::moments;
 use crate::placing::write_whole;
-use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::{last_state, read_log};
 use crate::record::summary::SUMMARY;
+use crate::record::{LOG, log_at};
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
 use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
@@ -278,8 +278,9 @@ pub fn check_beginning(scenario: &AnyScenario) -> Result<(), RunError> {
 pub(crate) fn initial_gas<V: Vector>(scenario: &Scenario<V>) -> Result<crate::matter::gas::Gas<V>, RunError> {
     let saved = match &scenario.initial.positions {
         InitialPositions::Log(path) => {
-            let state = last_state::<V>(path).map_err(RunError::InitialLog)?;
-            let state = state.ok_or_else(|| RunError::InitialState(path.clone()))?;
+            let log = log_at(path);
+            let state = last_state::<V>(&log).map_err(RunError::InitialLog)?;
+            let state = state.ok_or(RunError::InitialState(log))?;
             Some(state.columns.into_owned())
         }
         _ => None,

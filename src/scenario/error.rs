@@ -1,5 +1,6 @@
 //! What is wrong with a scenario: every mistake at once.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// All mistakes of one scenario, in the order of its lines.
@@ -10,6 +11,10 @@ pub struct ScenarioError {
     /// At least one.
     pub mistakes: Vec<Mistake>,
 }
+
+/// Names of options and keys are shown up to this length, and messages up to that [characters].
+const LONGEST_NAME: usize = 240;
+const LONGEST_MESSAGE: usize = 900;
 
 /// One mistake, with what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,15 +71,43 @@ impl fmt::Display for ScenarioError {
             match &mistake.place {
                 Place::Line(line) => write!(f, "{}:{line}: ", self.file)?,
                 Place::File => write!(f, "{}: ", self.file)?,
-                Place::Option { name, .. } => write!(f, "{name}: ")?,
+                Place::Option { name, .. } => write!(f, "{}: ", shortened(name, LONGEST_NAME))?,
             }
             if !mistake.key.is_empty() {
-                write!(f, "{}: ", mistake.key)?;
+                write!(f, "{}: ", shortened(&mistake.key, LONGEST_NAME))?;
             }
-            write!(f, "{}", mistake.message)?;
+            write!(f, "{}", shortened(&mistake.message, LONGEST_MESSAGE))?;
         }
         Ok(())
     }
 }
 
 impl std::error::Error for ScenarioError {}
+
+/// `text` in at most so many characters: of a longer one the middle, which somebody pasted, is left out.
+fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+    let length = text.chars().count();
+    if length <= most {
+        return text.into();
+    }
+    let start: String = text.chars().take(2 * most / 3).collect();
+    let end: String = text.chars().skip(length - most / 3).collect();
+    format!("{start} … {end}").into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_pasted_is_not_repeated_in_full() {
+        let mistake = Mistake {
+            place: Place::Option { order: 0, name: format!("--set #1 'seed={}'", "é".repeat(3000)) },
+            key: "seed".to_owned(),
+            message: format!("\"{}\" is no number; give one", "9".repeat(3000)),
+        };
+        let said = ScenarioError::sorted("a.toml", vec![mistake]).to_string();
+        assert!(said.chars().count() < 1500, "{said}");
+        assert!(said.starts_with("--set #1 'seed=éé") && said.ends_with("give one"), "{said}");
+    }
+}
