@@ -88,6 +88,7 @@ impl RunError {
             RunError::Folder(FolderError::Exists { .. } | FolderError::NotAFolder { .. })
                 | RunError::Initial(_)
                 | RunError::InitialLog(_)
+                | RunError::Log(LogError::Unfit { .. })
         )
     }
 }

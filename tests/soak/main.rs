@@ -89,7 +89,7 @@ fn a_late_start_changes_no_step() {
             let begun = Simulation::start(&scenario, gas, &mut NoLaps).unwrap();
             let mut saved = begun.saved_state(0, 0);
             saved.time = start;
-            let mut simulation = Simulation::resume(&scenario, saved);
+            let mut simulation = Simulation::resume(&scenario, saved).unwrap();
             for _ in 0..300 {
                 simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
             }
@@ -117,7 +117,7 @@ fn a_step_that_breaks_a_law_is_found() {
         let mut saved = simulation.saved_state(0, 0);
         let columns = saved.columns.to_mut();
         spoil(&mut columns.velocities, &mut columns.ids);
-        let spoilt = Simulation::resume(&scenario, saved);
+        let spoilt = Simulation::resume(&scenario, saved).map_err(|misfit| misfit.to_string())?;
         Laws::of(&scenario, simulation.gas()).check(&spoilt)
     };
     assert_eq!(spoilt(&|_, _| {}), Ok(()));
