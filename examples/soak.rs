@@ -30,6 +30,8 @@ mod readers;
 mod requests;
 #[path = "../tests/soak/scaling.rs"]
 mod scaling;
+#[path = "../tests/soak/states.rs"]
+mod states;
 #[path = "../tests/soak/trial.rs"]
 mod trial;
 #[path = "../tests/soak/watch.rs"]

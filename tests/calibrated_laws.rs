@@ -148,7 +148,7 @@ fn a_resumed_run_knows_where_in_the_law_it_was() {
                 assert!(whole.totals().collisions_per_particle > 1.6);
                 let mut saved = whole.saved_state(0, 0);
                 saved.columns = Cow::Owned(saved.columns.into_owned());
-                let mut resumed = Simulation::resume(&scenario, saved);
+                let mut resumed = Simulation::resume(&scenario, saved).unwrap();
                 finish(&mut resumed);
                 finish(&mut whole);
                 assert_eq!(state_hash(whole.gas()), state_hash(resumed.gas()));

@@ -8,7 +8,7 @@ use grainflow::matter::columns::Columns;
 use grainflow::matter::gas::Gas;
 use grainflow::scenario::model::{AnyScenario, Scenario};
 use grainflow::scenario::{Overrides, initial, parse};
-use grainflow::simulation::{Simulation, SimulationError};
+use grainflow::simulation::assembly::engine;
 
 const STEPS_BEFORE: u64 = 3;
 
@@ -45,20 +45,15 @@ fn error_after(
     id: u32,
     spoil: impl Fn(&mut Columns<DVec2>, usize),
 ) -> (EngineError, u32) {
-    let gas: Gas<DVec2> = initial::build(scenario, None).unwrap();
-    let mut simulation = Simulation::start(scenario, gas, &mut NoLaps).unwrap();
+    let mut gas: Gas<DVec2> = initial::build(scenario, None).unwrap();
+    let mut engine = engine(scenario, scenario.seed, &scenario.boundary, scenario.gravity, None);
     for _ in 0..STEPS_BEFORE {
-        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
+        engine.step(&mut gas, Horizon::NONE, &mut NoLaps).unwrap();
     }
-    let mut saved = simulation.saved_state(0, 0);
-    let row = saved.columns.ids.iter().position(|&other| other == id).unwrap();
-    let cell = simulation.gas().grid().cell_of(saved.columns.positions[row]);
-    spoil(saved.columns.to_mut(), row);
-    let mut simulation = Simulation::resume(scenario, saved);
-    match simulation.advance(&mut NoLaps, Horizon::NONE).unwrap_err() {
-        SimulationError::Engine(error) => (error, cell),
-        other => panic!("{other}"),
-    }
+    let row = gas.ids().iter().position(|&other| other == id).unwrap();
+    let cell = gas.grid().cell_of(gas.positions()[row]);
+    spoil(gas.parts_mut().2, row);
+    (engine.step(&mut gas, Horizon::NONE, &mut NoLaps).unwrap_err(), cell)
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn through_log<'s, V: Vector>(simulation: &Simulation<'s, V>, log: &Path) -> Sim
     writer.finish().unwrap();
     let read = last_state::<V>(log).unwrap().unwrap();
     assert_eq!(read, saved);
-    Simulation::resume(simulation.scenario(), read)
+    Simulation::resume(simulation.scenario(), read).unwrap()
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_restart_keeps_the_times_of_samples() {
 /// Goes on from `state` to the end of the run.
 fn resumed_end<V: Vector>(scenario: &Scenario<V>, log: &Path, state: usize) -> (End, Vec<(String, String)>) {
     let saved = read_states::<V>(log).unwrap().swap_remove(state);
-    let mut simulation = Simulation::resume(scenario, saved);
+    let mut simulation = Simulation::resume(scenario, saved).unwrap();
     while simulation.end_reason().is_none() {
         simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
@@ -327,7 +327,7 @@ fn counted(log: &RunLog, name: &str, time: f64) -> f64 {
 fn assert_restart_goes_on_counting<V: Vector>(scenario: &Scenario<V>, log: &Path) {
     let state = read_states::<V>(log).unwrap().swap_remove(0);
     let before = counted(&read_log(log).unwrap(), "collisions", state.time);
-    let mut simulation = Simulation::resume(scenario, state);
+    let mut simulation = Simulation::resume(scenario, state).unwrap();
     while simulation.end_reason().is_none() {
         simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }

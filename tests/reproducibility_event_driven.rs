@@ -89,7 +89,7 @@ fn simulate<V: Vector>(scenario: &Scenario<V>) -> (String, u64, u64, u64) {
 
 fn resume<V: Vector>(scenario: &Scenario<V>, log: &Path, state: usize) -> (String, u64, u64, u64) {
     let saved = read_states::<V>(log).unwrap().swap_remove(state);
-    let mut simulation = Simulation::resume(scenario, saved);
+    let mut simulation = Simulation::resume(scenario, saved).unwrap();
     while simulation.end_reason().is_none() {
         simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }

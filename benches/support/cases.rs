@@ -100,7 +100,7 @@ impl<V: Vector> Running for Run<V> {
     fn rewind(&mut self) {
         let (gas, state) = self.marked.as_ref().expect("a state was marked");
         self.gas = gas.clone();
-        self.engine.restore(state);
+        self.engine.restore(state, &self.gas).expect("the engine takes back its own state");
     }
 
     fn unevenness(&self) -> (f64, f64) {
@@ -149,7 +149,10 @@ fn clustered<V: Vector>(case: Case, scenario: &Scenario<V>) -> Run<V> {
         collisions += making.step(&mut NoLaps);
     }
     let mut clustered = run(case, scenario, making.gas);
-    clustered.engine.restore(&making.engine.state());
+    clustered
+        .engine
+        .restore(&making.engine.state(), &clustered.gas)
+        .expect("any engine begins with a state without grains");
     clustered
 }
 

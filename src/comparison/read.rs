@@ -37,6 +37,17 @@ pub enum LogsError {
     /// A summary beside a log is broken.
     #[error("{0}; take it away, and the log is compared without figures")]
     Summary(#[from] SummaryError),
+    /// A log without a proper seed.
+    #[error(
+        "{}: the seed in its metadata is `{found}`, no whole number from 0 to 18446744073709551615; copy the log again from \
+         where it came from", path.display()
+    )]
+    Seed {
+        /// The log.
+        path: PathBuf,
+        /// What stands there.
+        found: String,
+    },
     /// Logs that do not belong together.
     #[error("{}: its {what} is `{own}`, and that of {} is `{other}`; compare runs of one scenario", path.display(), first.display())]
     Unlike {
@@ -75,7 +86,7 @@ pub fn read(paths: &[PathBuf]) -> Result<(Head, Vec<Entry>), LogsError> {
     if let Some(first) = entries.first() {
         let log = &first.runs[0].log;
         head.scenario_text.clone_from(&log.scenario);
-        head.seed = log.metadata.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(0);
+        head.seed = seed(&paths[0], log)?;
         head.remarks = entries[1..].iter().flat_map(|other| unlike(first, other)).collect();
     }
     for (path, entry) in paths.iter().zip(&entries) {
@@ -84,6 +95,12 @@ pub fn read(paths: &[PathBuf]) -> Result<(Head, Vec<Entry>), LogsError> {
         head.remarks.extend(cut_off.map(|missing| format!("{}: {missing}", path.display())));
     }
     Ok((head, entries))
+}
+
+/// The seed that the log at `path` names.
+fn seed(path: &Path, log: &RunLog) -> Result<u64, LogsError> {
+    let found = log.metadata.get("seed").map_or("", String::as_str);
+    found.parse().map_err(|_| LogsError::Seed { path: path.to_owned(), found: found.to_owned() })
 }
 
 fn entry(path: &Path) -> Result<Entry, LogsError> {
@@ -195,6 +212,19 @@ mod tests {
             ["particles.mass is not given in a, 1.0 in b.", "particles.restitution is 0.9 in a, 0.898 in b."]
         );
         assert_eq!(unlike(&a, &a), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_seed_that_is_none_is_refused() {
+        let log = |seed: &str| RunLog {
+            metadata: BTreeMap::from([("seed".to_owned(), seed.to_owned())]),
+            ..RunLog::default()
+        };
+        assert_eq!(seed(Path::new("a"), &log("18446744073709551615")).unwrap(), u64::MAX);
+        for wrong in ["", "-1", "7.0", "18446744073709551616"] {
+            let error = seed(Path::new("a"), &log(wrong)).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("a: the seed in its metadata is `{wrong}`")), "{error}");
+        }
     }
 
     #[test]

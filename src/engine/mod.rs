@@ -27,8 +27,9 @@ pub trait Engine<V: Vector>: Send {
     /// Everything beside the gas that the next step reads, as numbers to be saved.
     fn state(&self) -> EngineState;
 
-    /// Takes over what [`Engine::state`] gave.
-    fn restore(&mut self, state: &EngineState);
+    /// Takes over what [`Engine::state`] gave when the grains were those of `gas`. A state without numbers and words is that of
+    /// an engine that begins with `gas`. Nothing changes where it does not fit.
+    fn restore(&mut self, state: &EngineState, gas: &Gas<V>) -> Result<(), EngineMisfit>;
 
     /// Somebody has changed velocities from outside: what the engine knew of them is void.
     fn forget_pace(&mut self);
@@ -99,6 +100,11 @@ pub struct EngineState {
     /// The same, as words.
     pub words: Vec<u32>,
 }
+
+/// Why an engine cannot go on from a state: something in it is not as any engine leaves it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("what the engine held is not whole: {0}")]
+pub struct EngineMisfit(pub &'static str);
 
 /// Why a step could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -100,8 +100,9 @@ impl<V: Vector> Measure<V> for Energy<V> {
         memory
     }
 
-    fn recall(&mut self, memory: &[f64]) {
+    fn recall(&mut self, memory: &[f64]) -> bool {
         self.start = match memory {
+            [] => None,
             [kinetic_energy, momentum_scale, momentum @ ..] if momentum.len() == V::DIMENSION => {
                 Some(Start {
                     kinetic_energy: *kinetic_energy,
@@ -109,8 +110,9 @@ impl<V: Vector> Measure<V> for Energy<V> {
                     momentum_scale: *momentum_scale,
                 })
             }
-            _ => None,
+            _ => return false,
         };
+        true
     }
 }
 

@@ -71,8 +71,8 @@ impl<V: Vector> Measure<V> for Flow {
         self.samples.memory().to_vec()
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        self.samples.recall(memory);
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        self.samples.recall(memory)
     }
 }
 

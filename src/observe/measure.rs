@@ -136,6 +136,8 @@ pub trait Measure<V: Vector>: Send {
         Vec::new()
     }
 
-    /// Takes over what [`Measure::memory`] gave.
-    fn recall(&mut self, _memory: &[f64]) {}
+    /// Takes over what [`Measure::memory`] gave, and tells whether it is such a memory; of another one nothing is taken.
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        memory.is_empty()
+    }
 }

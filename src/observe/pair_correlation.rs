@@ -241,8 +241,8 @@ impl<V: Vector> Measure<V> for PairCorrelation<V> {
         self.samples.memory().to_vec()
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        self.samples.recall(memory);
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        self.samples.recall(memory)
     }
 }
 

@@ -107,11 +107,20 @@ impl<V: Vector> Measure<V> for Pressure {
         [&[f64::from(u8::from(self.previous.is_some()))], &previous[..], self.samples.memory()].concat()
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        let Some((&recorded, rest)) = memory.split_first() else { return };
-        let previous = if recorded > 0.0 { rest.split_first_chunk() } else { None };
-        self.previous = previous.map(|(row, _)| *row);
-        self.samples.recall(previous.map_or(rest, |(_, samples)| samples));
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        let (previous, samples) = match memory {
+            [0.0, samples @ ..] => (None, samples),
+            [1.0, rest @ ..] => match rest.split_first_chunk() {
+                Some((previous, samples)) => (Some(*previous), samples),
+                None => return false,
+            },
+            _ => return false,
+        };
+        let is_one = self.samples.recall(samples);
+        if is_one {
+            self.previous = previous;
+        }
+        is_one
     }
 }
 

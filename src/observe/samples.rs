@@ -46,10 +46,16 @@ impl Samples {
         &self.flat
     }
 
-    /// Takes over what [`Samples::memory`] gave.
-    pub(crate) fn recall(&mut self, memory: &[f64]) {
-        self.flat.clear();
-        self.flat.extend_from_slice(memory);
+    /// Takes over what [`Samples::memory`] gave, and tells whether it is that: whole rows at rising times.
+    pub(crate) fn recall(&mut self, memory: &[f64]) -> bool {
+        let rows = memory.chunks_exact(self.width);
+        let is_whole = rows.remainder().is_empty();
+        let is_one = is_whole && rows.map(|row| row[0]).is_sorted_by(|first, next| first < next);
+        if is_one {
+            self.flat.clear();
+            self.flat.extend_from_slice(memory);
+        }
+        is_one
     }
 }
 
@@ -122,6 +128,17 @@ mod tests {
         samples.push(20.0, &[99.0]);
         assert_eq!(samples, counted());
         assert_eq!(samples.since(19.0), [[19.0, 39.0], [20.0, 40.0]]);
+    }
+
+    #[test]
+    fn only_whole_rows_at_rising_times_are_recalled() {
+        let mut samples = Samples::new(1);
+        for wrong in [&[0.0, 1.0, 2.0][..], &[1.0, 0.0, 1.0, 0.0], &[f64::NAN, 0.0, 1.0, 0.0]] {
+            assert!(!samples.recall(wrong));
+            assert_eq!(samples, Samples::new(1));
+        }
+        assert!(samples.recall(counted().memory()));
+        assert_eq!(samples, counted());
     }
 
     #[test]

@@ -149,12 +149,17 @@ impl<V: Vector> Measure<V> for Spectrum {
         memory
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        let Some((&samples, rest)) = memory.split_first() else { return };
-        if let Some((times, counts)) = rest.split_at_checked(samples as usize) {
-            self.times = times.to_vec();
-            self.counts = unpack(counts);
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        let Some((&samples, rest)) = memory.split_first() else { return false };
+        let Some((times, packed)) = rest.split_at_checked(samples as usize) else { return false };
+        let counts = unpack(packed);
+        let is_one = pack(&counts) == packed
+            && counts.len() == times.len() * self.slices
+            && times.is_sorted_by(|first, next| first < next);
+        if is_one {
+            (self.times, self.counts) = (times.to_vec(), counts);
         }
+        is_one
     }
 }
 

@@ -135,7 +135,12 @@ pub(crate) fn assert_resumes<V: Vector>(make: impl Fn() -> Box<dyn Measure<V>>, 
     }
     let saved = first.memory();
     let mut second = make();
-    second.recall(&saved);
+    assert!(second.recall(&saved), "{}", first.name());
+    if !saved.is_empty() {
+        // A memory of another length is none.
+        let misread = [&saved[..], &[7.0]].concat();
+        assert!(!second.recall(&misread), "{}", first.name());
+    }
     let bits = |memory: Vec<f64>| memory.into_iter().map(f64::to_bits).collect::<Vec<_>>();
     assert_eq!(bits(second.memory()), bits(saved));
     for state in after {

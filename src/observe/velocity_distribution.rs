@@ -203,8 +203,8 @@ impl<V: Vector> Measure<V> for VelocityDistribution {
         self.samples.memory().to_vec()
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        self.samples.recall(memory);
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        self.samples.recall(memory)
     }
 }
 

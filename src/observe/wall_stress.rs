@@ -96,11 +96,13 @@ impl<V: Vector> Measure<V> for WallStress<V> {
         [&self.previous, self.samples.memory()].concat()
     }
 
-    fn recall(&mut self, memory: &[f64]) {
-        if let Some((previous, samples)) = memory.split_first_chunk() {
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        let Some((previous, samples)) = memory.split_first_chunk() else { return false };
+        let is_one = self.samples.recall(samples);
+        if is_one {
             self.previous = *previous;
-            self.samples.recall(samples);
         }
+        is_one
     }
 }
 

@@ -87,6 +87,14 @@ pub enum LogError {
         /// What does not fit.
         reason: String,
     },
+    /// A state in it is none of the run.
+    #[error("the log {}: {reason}; its checksums hold, so that somebody has changed it and made them anew: copy the log again from where it came from", path.display())]
+    Unfit {
+        /// The log.
+        path: PathBuf,
+        /// What does not fit.
+        reason: String,
+    },
     /// Messages were taken out of it.
     #[error("the log {} is not whole: {} missing, though all the bytes around are sound: a part was taken out of the file; copy it again from where it came from, or save what is there with `grainflow recover`", path.display(), numbers(topic, *first, *last))]
     Missing {

@@ -53,7 +53,7 @@ pub(super) fn last_good<V: Vector, R>(
 
 fn begin<'s, V: Vector>(scenario: &'s Scenario<V>, log: &Path) -> Option<Running<'s, V>> {
     let (simulation, timetable) = match last_state::<V>(log).ok()? {
-        Some(state) => go_on_with(scenario, state, false),
+        Some(state) => go_on_with(scenario, state, false).ok()?,
         None => {
             let gas = initial_gas(scenario).ok()?;
             let simulation = Simulation::start(scenario, gas, &mut NoLaps).ok()?;

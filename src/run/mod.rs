@@ -93,7 +93,10 @@ impl RunError {
     pub fn is_bad_input(&self) -> bool {
         match self {
             RunError::Folder(error) => error.is_bad_input(),
-            RunError::Initial(_) | RunError::InitialLog(_) | RunError::InitialState(_) => true,
+            RunError::Initial(_)
+            | RunError::InitialLog(_)
+            | RunError::InitialState(_)
+            | RunError::Log(LogError::Unfit { .. }) => true,
             _ => false,
         }
     }

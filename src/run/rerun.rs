@@ -1,9 +1,10 @@
 //! The run of a log once more, from one moment of the log to the next.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::looks::Looks;
-use super::resume::go_on_with;
+use super::resume::{go_on_with, unfit};
 use super::shown::Shown;
 use super::timetable::Timetable;
 use super::{Listener, RunError, initial_gas, status};
@@ -13,10 +14,12 @@ use crate::record::contents::EarlierPart;
 use crate::record::state::SavedState;
 use crate::scenario::model::{InitialPositions, Scenario};
 use crate::simulation::Simulation;
+use crate::simulation::fit::Misfit;
 use crate::space::Vector;
 
 /// A run that follows a log.
 pub(super) struct Rerun<'s, V: Vector> {
+    log: &'s Path,
     /// The scenarios of the parts of the run; the last one goes on to its end.
     parts: &'s [Scenario<V>],
     /// Where the parts end, but for the last.
@@ -68,14 +71,15 @@ impl<'s, V: Vector> Running<'s, V> {
 }
 
 impl<'s, V: Vector> Rerun<'s, V> {
-    /// A run of these `parts`, which has not begun.
+    /// A run of these `parts`, which has not begun, beside its `log`.
     pub(super) fn new(
+        log: &'s Path,
         parts: &'s [Scenario<V>],
         ends: &'s [EarlierPart],
         stop: &'s AtomicBool,
         tell: Listener<'s>,
     ) -> Self {
-        Rerun { parts, ends, part: 0, running: None, stop, tell }
+        Rerun { log, parts, ends, part: 0, running: None, stop, tell }
     }
 
     /// Begins, unless it has begun: with the grains of `state` where the scenario takes them from another log.
@@ -86,7 +90,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
         let scenario = &self.parts[0];
         let simulation = match (&scenario.initial.positions, state) {
             (InitialPositions::Log(_), Some(state)) if state.recordings == 0 => {
-                Simulation::resume(scenario, state.clone())
+                Simulation::resume(scenario, state.clone()).map_err(|misfit| unfit(self.log, &misfit))?
             }
             _ => {
                 let gas = initial_gas(scenario)?;
@@ -156,10 +160,10 @@ impl<'s, V: Vector> Rerun<'s, V> {
     }
 
     /// Whether a run was interrupted at `state`: nothing is due there, and no end.
-    pub(super) fn is_interruption(&self, state: &SavedState<'static, V>) -> bool {
+    pub(super) fn is_interruption(&self, state: &SavedState<'static, V>) -> Result<bool, Misfit> {
         let Running { simulation, timetable, .. } = self.now();
-        let there = Simulation::resume(simulation.scenario(), state.clone());
-        there.end_reason().is_none() && !timetable.wants_state(&there)
+        let there = Simulation::resume(simulation.scenario(), state.clone())?;
+        Ok(there.end_reason().is_none() && !timetable.wants_state(&there))
     }
 
     /// Takes the recording that is due: names of the columns, and their values.
@@ -175,7 +179,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
         steps: u64,
         events: u64,
         judge: impl FnOnce(&SavedState<'_, V>) -> R,
-    ) -> R {
+    ) -> Result<R, Misfit> {
         while self
             .ends
             .get(self.part)
@@ -184,7 +188,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
             self.part += 1;
             let Running { simulation, timetable, .. } = self.now();
             let state = simulation.saved_state(timetable.recordings, timetable.saved);
-            let (simulation, timetable) = go_on_with(&self.parts[self.part], state, true);
+            let (simulation, timetable) = go_on_with(&self.parts[self.part], state, true)?;
             self.running = Some(Running::new(simulation, timetable));
         }
         let Running { simulation, timetable, .. } = self.now_mut();
@@ -192,6 +196,6 @@ impl<'s, V: Vector> Rerun<'s, V> {
         if timetable.wants_state(simulation) {
             timetable.state_saved(simulation);
         }
-        verdict
+        Ok(verdict)
     }
 }

@@ -19,6 +19,8 @@ use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Scenario};
 use crate::scenario::{Overrides, parse};
 use crate::simulation::Simulation;
+use crate::simulation::fit::Misfit;
+use crate::simulation::limits::EndReason;
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
 
@@ -154,14 +156,13 @@ impl Resumption {
         if matches!(state, State::Two(None) | State::Three(None)) {
             return run(&scenario, folder, force, stop, tell);
         }
-        let folder = RunFolder::claim(folder, force)?;
         let from = From { log: &log, history: &history, changes };
         rayon::scope(|_| match (&scenario, state) {
             (AnyScenario::Two(scenario), State::Two(Some(state))) => {
-                from.resume(scenario, state, folder)?.end_and_write(stop, tell)
+                from.resume(scenario, state, (folder, force))?.end_and_write(stop, tell)
             }
             (AnyScenario::Three(scenario), State::Three(Some(state))) => {
-                from.resume(scenario, state, folder)?.end_and_write(stop, tell)
+                from.resume(scenario, state, (folder, force))?.end_and_write(stop, tell)
             }
             _ => unreachable!("the state was read in the dimension of the scenario"),
         })
@@ -173,8 +174,10 @@ impl Resumption {
             return Ok(());
         }
         let reached = match (&self.scenario, &self.state) {
-            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => end_reason(scenario, state),
-            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => end_reason(scenario, state),
+            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => self.end_reason(scenario, state)?,
+            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => {
+                self.end_reason(scenario, state)?
+            }
             _ => None,
         };
         match reached {
@@ -183,6 +186,19 @@ impl Resumption {
             }
             None => Ok(()),
         }
+    }
+
+    /// The limit that `state` has reached, and how far it has come.
+    fn end_reason<V: Vector>(
+        &self,
+        scenario: &Scenario<V>,
+        state: &SavedState<'_, V>,
+    ) -> Result<Option<(&'static str, Progress)>, LogError> {
+        let simulation =
+            Simulation::resume(scenario, state.clone()).map_err(|misfit| unfit(&self.log, &misfit))?;
+        let (steps, collisions) = (state.totals.steps, state.totals.collisions_per_particle);
+        let reached = |reason: EndReason| (reason.name(), Progress { time: state.time, steps, collisions });
+        Ok(simulation.end_reason().map(reached))
     }
 }
 
@@ -193,15 +209,9 @@ struct Progress {
     collisions: f64,
 }
 
-/// The limit that `state` has reached, and how far it has come.
-fn end_reason<V: Vector>(
-    scenario: &Scenario<V>,
-    state: &SavedState<'_, V>,
-) -> Option<(&'static str, Progress)> {
-    let simulation = Simulation::resume(scenario, state.clone());
-    let reason = simulation.end_reason()?;
-    let (steps, collisions) = (state.totals.steps, state.totals.collisions_per_particle);
-    Some((reason.name(), Progress { time: state.time, steps, collisions }))
+/// The error for a state in the `log` that its run cannot go on from.
+pub(super) fn unfit(log: &Path, misfit: &Misfit) -> LogError {
+    LogError::Unfit { path: log.to_owned(), reason: misfit.to_string() }
 }
 
 /// Whether `--set` may change this key.
@@ -283,13 +293,15 @@ impl From<'_> {
         self,
         scenario: &'s Scenario<V>,
         (state, place): Placed<V>,
-        folder: RunFolder,
+        (folder, force): (&Path, bool),
     ) -> Result<Run<'s, V>, RunError> {
         let watch = Stopwatch::default();
         let earlier = self.parts_before(&state);
         let changed = earlier != self.history.earlier;
         let begins_log = state.recordings == 0;
-        let (mut simulation, timetable) = go_on_with(scenario, state, changed);
+        let (mut simulation, timetable) =
+            go_on_with(scenario, state, changed).map_err(|misfit| unfit(self.log, &misfit))?;
+        let folder = RunFolder::claim(folder, force)?;
         let origin = Origin {
             log: self.log,
             history: self.history,
@@ -308,13 +320,13 @@ pub(super) fn go_on_with<'s, V: Vector>(
     scenario: &'s Scenario<V>,
     state: SavedState<'_, V>,
     changed: bool,
-) -> (Simulation<'s, V>, Timetable) {
+) -> Result<(Simulation<'s, V>, Timetable), Misfit> {
     let (recordings, states) = (state.recordings, state.states);
     if !changed {
         let timetable = Timetable::after(&scenario.record, recordings, states);
-        return (Simulation::resume(scenario, state), timetable);
+        return Ok((Simulation::resume(scenario, state)?, timetable));
     }
-    let simulation = Simulation::resume_changed(scenario, state);
+    let simulation = Simulation::resume_changed(scenario, state)?;
     let timetable = Timetable::from_now(&simulation);
-    (simulation, timetable)
+    Ok((simulation, timetable))
 }

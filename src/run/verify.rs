@@ -18,6 +18,7 @@ use crate::record::log_at;
 use crate::scenario::Overrides;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Scenario};
+use crate::simulation::fit::Misfit;
 use crate::space::Vector;
 
 /// Why a log cannot be verified.
@@ -147,7 +148,7 @@ fn verify_in<V: Vector>(
     tell: Listener<'_>,
 ) -> Result<Verdict, VerifyError> {
     let same_version = history.value("version") == env!("CARGO_PKG_VERSION");
-    let rerun = Rerun::new(parts, &history.earlier, stop, tell);
+    let rerun = Rerun::new(log, parts, &history.earlier, stop, tell);
     let mut check = Check {
         rerun,
         same_version,
@@ -209,11 +210,12 @@ impl<V: Vector> Check<'_, V> {
                 self.recording(&values, &state_hash, grains)
             }
             Checkpoint::State(state) => self.rerun.begin(Some(&state)).map_err(End::Failed).and_then(|()| {
-                self.reach(state.time, self.rerun.is_interruption(&state))?;
-                let difference = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
+                let unlike = |misfit: Misfit| End::Different(misfit.to_string());
+                self.reach(state.time, self.rerun.is_interruption(&state).map_err(unlike)?)?;
+                let compared = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
                     first_difference(&state, rerun, self.same_version)
                 });
-                self.count(difference, |extent| extent.states += 1)
+                self.count(compared.map_err(unlike)?, |extent| extent.states += 1)
             }),
         };
         self.end = done.err();

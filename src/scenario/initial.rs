@@ -67,6 +67,17 @@ pub enum InitialError {
         /// The engine of this scenario.
         kind: &'static str,
     },
+    /// No identities are left for further grains.
+    #[error(
+        "initial.positions: grain {id} of the log has an identity after which there are not enough for {to_come} poured \
+         grains and the next one, up to 4294967295; lower source.count, or start from a log whose grains are numbered from 0"
+    )]
+    Identities {
+        /// The last identity.
+        id: u32,
+        /// Grains that the source will pour.
+        to_come: u32,
+    },
     /// Grains do not come to their size.
     #[error(transparent)]
     Growth(#[from] GrowthError),
@@ -94,7 +105,7 @@ pub fn build<V: Vector>(scenario: &Scenario<V>, saved: Option<Columns<V>>) -> Re
         positions,
         species,
     };
-    Ok(ready(scenario, columns))
+    ready(scenario, columns)
 }
 
 /// Places `[id]`; for the event-driven engine and `compressed` without overlap.
@@ -122,11 +133,16 @@ fn diameters<V: Vector>(scenario: &Scenario<V>, species: Option<&[u8]>) -> Vec<f
 }
 
 /// The gas of these columns at time 0, in the scenario's cells.
-fn ready<V: Vector>(scenario: &Scenario<V>, columns: Columns<V>) -> Gas<V> {
-    let next_id = columns.ids.iter().max().map_or(0, |&id| id + 1);
+fn ready<V: Vector>(scenario: &Scenario<V>, columns: Columns<V>) -> Result<Gas<V>, InitialError> {
+    let last = columns.ids.iter().max().copied();
+    let next_id = last.map_or(Some(0), |id| id.checked_add(1));
+    let to_come = scenario.source.as_ref().map_or(0, |source| source.count);
+    let next_id = next_id
+        .filter(|next| next.checked_add(to_come).is_some())
+        .ok_or(InitialError::Identities { id: last.unwrap_or(0), to_come })?;
     let mut gas = Gas::restored(scenario.grid(), scenario.grain, columns, Clock::default(), next_id);
     gas.species = scenario.species.clone();
-    gas
+    Ok(gas)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A run: a scenario's gas, the engine that advances it, the measures that watch.
 
 pub mod assembly;
+pub mod fit;
 pub mod limits;
 pub mod pouring;
 pub mod schedule;
@@ -21,6 +22,7 @@ use crate::record::state::{Beginning, SavedState};
 use crate::scenario::initial::{rescale, stated_temperature};
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
+use fit::Misfit;
 use limits::{EndReason, Limits};
 use pouring::{Pouring, PouringError, Room};
 use schedule::Spread;
@@ -90,15 +92,23 @@ impl<'s, V: Vector> Simulation<'s, V> {
         Ok(simulation)
     }
 
-    /// Goes on from a saved state, to the same bits as if there had been no interruption.
-    pub fn resume(scenario: &'s Scenario<V>, mut saved: SavedState<'_, V>) -> Self {
+    /// Goes on from a saved state, to the same bits as if there had been no interruption. A state that no run of `scenario`
+    /// can have left is refused.
+    pub fn resume(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Result<Self, Misfit> {
+        let time = saved.time;
+        Self::go_on(scenario, saved).map_err(|reason| Misfit { time, reason })
+    }
+
+    fn go_on(scenario: &'s Scenario<V>, mut saved: SavedState<'_, V>) -> Result<Self, String> {
+        fit::check(scenario, &saved)?;
         let mut gas = saved.take_gas(scenario.grid(), scenario.grain);
         gas.species.clone_from(&scenario.species);
         let mut simulation = Self::assemble(scenario, gas, saved.beginning);
-        simulation.engine.restore(&saved.engine);
+        simulation.engine.restore(&saved.engine, &simulation.gas).map_err(|misfit| misfit.to_string())?;
         simulation.totals = saved.totals;
         if let Some(pouring) = &mut simulation.pouring {
-            pouring.restore(simulation.totals.poured, saved.last_poured, saved.held_until);
+            let (poured, last, held) = (simulation.totals.poured, saved.last_poured, saved.held_until);
+            pouring.restore(poured, last, held).ok_or("its source never comes to that")?;
         }
         simulation.invalid_states = saved.invalid_states;
         simulation.resumed = Some(Resumed {
@@ -111,20 +121,26 @@ impl<'s, V: Vector> Simulation<'s, V> {
         for (measure, taken) in simulation.measures.iter_mut().zip(&mut simulation.samples) {
             let place = saved.memories.iter().position(|(name, _)| name == measure.name());
             let Some(place) = place else { continue };
-            measure.recall(&saved.memories[place].1);
+            if !measure.recall(&saved.memories[place].1) {
+                return Err(format!(
+                    "the measure {} does not remember this; take it out with --set record.measures=[…]",
+                    measure.name()
+                ));
+            }
             *taken = saved.samples.get(place).copied().unwrap_or(*taken);
         }
         if let Some((_, memory)) = saved.memories.iter().find(|(name, _)| name == CELL_COUNTS) {
-            simulation.engine.count_in_cells(cell_counts::recalled(memory));
+            let counts = cell_counts::recalled(memory, simulation.gas.grid().number_of_cells());
+            simulation.engine.count_in_cells(counts.ok_or("what was counted in cells is of other cells")?);
         }
-        simulation
+        Ok(simulation)
     }
 
     /// The same for a run of which limits or records have changed: samples are spread over its new length.
-    pub fn resume_changed(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Self {
-        let mut simulation = Self::resume(scenario, saved);
+    pub fn resume_changed(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Result<Self, Misfit> {
+        let mut simulation = Self::resume(scenario, saved)?;
         simulation.spread_samples();
-        simulation
+        Ok(simulation)
     }
 
     /// Takes all samples that were due up to now as taken.

@@ -85,9 +85,16 @@ impl<V: Vector> Pouring<V> {
         }
     }
 
-    /// Goes on after `poured` grains, the last of them at `last_poured`; none comes before `held_until`.
-    pub fn restore(&mut self, poured: u64, last_poured: f64, held_until: f64) {
-        (self.poured, self.last_poured, self.held_until) = (poured as u32, last_poured, held_until);
+    /// Goes on after `poured` grains, the last of them at `last_poured`; none comes before `held_until`. `None` where the
+    /// source never comes to that.
+    #[must_use]
+    pub fn restore(&mut self, poured: u64, last_poured: f64, held_until: f64) -> Option<()> {
+        let poured = u32::try_from(poured).ok().filter(|&poured| poured <= self.source.count)?;
+        if !(last_poured.is_finite() && held_until.is_finite()) {
+            return None;
+        }
+        (self.poured, self.last_poured, self.held_until) = (poured, last_poured, held_until);
+        Some(())
     }
 
     /// Whether all grains are poured.

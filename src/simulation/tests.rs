@@ -1,7 +1,7 @@
 use super::*;
 use crate::engine::cell_counts::CellCount;
 use crate::engine::report::{Counts, StepReport};
-use crate::engine::{EngineState, NoLaps};
+use crate::engine::{EngineMisfit, EngineState, NoLaps};
 use crate::scenario::initial;
 use crate::scenario::model::AnyScenario;
 use glam::DVec2;
@@ -53,8 +53,9 @@ impl Engine<DVec2> for Beats {
         EngineState { words: vec![self.collided as u32], ..EngineState::default() }
     }
 
-    fn restore(&mut self, state: &EngineState) {
+    fn restore(&mut self, state: &EngineState, _gas: &Gas<DVec2>) -> Result<(), EngineMisfit> {
         self.collided = u64::from(state.words[0]);
+        Ok(())
     }
 
     fn forget_pace(&mut self) {}
@@ -255,9 +256,10 @@ fn a_source_that_waits_resumes_to_the_same_bits() {
     }
     let mut saved = whole.saved_state(0, 0);
     saved.columns = Cow::Owned(saved.columns.into_owned());
-    let mut resumed = Simulation::resume(&scenario, saved.clone());
+    let begun = SavedState { engine: EngineState::default(), ..saved.clone() };
+    let mut resumed = Simulation::resume(&scenario, begun).unwrap();
     resumed.engine = Box::new(Beats { collided: 0, calls: 0 });
-    resumed.engine.restore(&saved.engine);
+    resumed.engine.restore(&saved.engine, &resumed.gas).unwrap();
     for simulation in [&mut whole, &mut resumed] {
         recorded(simulation, Spread::Start);
     }

@@ -132,7 +132,7 @@ impl<V: Vector> Drive<V> {
     pub(crate) fn restart(&mut self) {
         let state = self.engine.state();
         self.engine = EventDriven::new(self.laws.clone(), self.structure);
-        self.engine.restore(&state);
+        self.engine.restore(&state, &self.gas).unwrap();
     }
 
     fn row(&self, id: u32) -> usize {

@@ -194,7 +194,7 @@ fn through_log<'s, V: Vector>(
     if format!("{read:?}") != format!("{saved:?}") {
         return Err("the state does not come back from the log as it was".to_owned());
     }
-    Ok(Simulation::resume(simulation.scenario(), read))
+    Simulation::resume(simulation.scenario(), read).map_err(|misfit| misfit.to_string())
 }
 
 /// The run into a folder leaves a log that holds the same run.

@@ -20,8 +20,8 @@ use super::trial::caught;
 use super::{logs, mutation, readers, requests, watch};
 
 /// What is fired at.
-pub(crate) const TARGETS: [&str; 9] =
-    ["scenario", "set", "table", "log", "recover", "replay", "export", "view", "request"];
+pub(crate) const TARGETS: [&str; 11] =
+    ["scenario", "set", "table", "log", "recover", "replay", "export", "view", "request", "resume", "verify"];
 /// The longest that one case may take on a loaded machine [s].
 const PATIENCE: f64 = 20.0;
 /// The most memory that the whole program may come to hold [bytes].
@@ -121,7 +121,14 @@ impl Range {
             }
             _ => {
                 let log = &self.logs[dice.below(self.logs.len())];
-                let wounded = if dice.chance(0.6) { logs::rewritten(dice, log) } else { None };
+                let goes_on = matches!(target, "resume" | "verify");
+                let wounded = if goes_on && dice.chance(0.8) {
+                    logs::with_wounded_states(dice, log)
+                } else if dice.chance(0.6) {
+                    logs::rewritten(dice, log)
+                } else {
+                    None
+                };
                 let data = wounded.unwrap_or_else(|| mutation::bytes(dice, log));
                 Shot { data, choice: dice.below(1000), ..Shot::default() }
             }
@@ -155,6 +162,8 @@ impl Range {
                     "replay" => readers::replayed(&log),
                     "export" => readers::exported(&log, shot.choice),
                     "view" => readers::viewed(&log),
+                    "resume" => readers::resumed(&log, shot.choice),
+                    "verify" => readers::verified(&log),
                     _ => readers::read(&log),
                 })
             }
@@ -180,14 +189,10 @@ fn take(scenario: Option<AnyScenario>) -> bool {
 
 /// A run may end with an error of its own, never with a panic.
 fn begin<V: Vector>(scenario: &Scenario<V>) {
-    let from_log = matches!(scenario.initial.positions, InitialPositions::Log(_));
-    if scenario.count > 300 || scenario.grid().number_of_cells() > 20_000 || from_log {
+    if !is_small(scenario) {
         return;
     }
     let Ok(gas) = initial::build(scenario, None) else { return };
-    if scenario.initial.equilibrate > 2.0 {
-        return;
-    }
     let Ok(mut simulation) = Simulation::start(scenario, gas, &mut NoLaps) else { return };
     for _ in 0..4 {
         let horizon = Horizon { collisions: 200, ..Horizon::NONE };
@@ -195,6 +200,15 @@ fn begin<V: Vector>(scenario: &Scenario<V>) {
             return;
         }
     }
+}
+
+/// Whether a run begins within a moment.
+pub(crate) fn is_small<V: Vector>(scenario: &Scenario<V>) -> bool {
+    let from_log = matches!(scenario.initial.positions, InitialPositions::Log(_));
+    scenario.count <= 300
+        && scenario.grid().number_of_cells() <= 20_000
+        && scenario.initial.equilibrate <= 2.0
+        && !from_log
 }
 
 /// What is fired.

@@ -11,7 +11,7 @@ use grainflow::scenario::{Overrides, parse};
 use mcap::records::Record;
 
 use super::draw::Dice;
-use super::mutation;
+use super::{mutation, states};
 
 /// A flat gas, a heap in space, exact dynamics with spins.
 const SCENARIOS: [&str; 3] = [
@@ -24,6 +24,9 @@ const SCENARIOS: [&str; 3] = [
      restitution = 0.9\ntangential_restitution = 0.5\n[initial]\nvelocities = { maxwell = 1.0 }\n[run]\ntime = 1.0\n\
      [record]\nframes = 2\nstates = 1\n",
 ];
+
+/// The topic of saved states.
+const STATES: &str = "/state";
 
 /// The logs of small runs.
 pub(crate) fn written(place: &Path) -> Result<Vec<Vec<u8>>, String> {
@@ -49,6 +52,30 @@ pub(crate) fn rewritten(dice: &mut Dice, log: &[u8]) -> Option<Vec<u8>> {
     for (place, record) in mcap::read::ChunkFlattener::new(log).ok()?.enumerate() {
         let hit = place == wounded || dice.chance(0.05);
         put(&mut writer, dice, record.ok()?, hit)?;
+    }
+    writer.finish().ok()?;
+    Some(writer.into_inner().into_inner())
+}
+
+/// `log` with wounds in its saved states only, and with checksums that hold.
+pub(crate) fn with_wounded_states(dice: &mut Dice, log: &[u8]) -> Option<Vec<u8>> {
+    let mut writer = mcap::WriteOptions::new().compression(None).create(Cursor::new(Vec::new())).ok()?;
+    let mut of_states = None;
+    for record in mcap::read::ChunkFlattener::new(log).ok()? {
+        match record.ok()? {
+            Record::Message { header, data } if Some(header.channel_id) == of_states => {
+                let data = if dice.chance(0.7) { states::wounded(dice, &data) } else { data.to_vec() };
+                writer.write_to_known_channel(&header, &data).ok()?;
+            }
+            record => {
+                if let Record::Channel(channel) = &record
+                    && channel.topic == STATES
+                {
+                    of_states = Some(channel.id);
+                }
+                put(&mut writer, dice, record, false)?;
+            }
+        }
     }
     writer.finish().ok()?;
     Some(writer.into_inner().into_inner())

@@ -11,6 +11,7 @@ mod mutation;
 mod readers;
 mod requests;
 mod scaling;
+mod states;
 mod trial;
 mod watch;
 
@@ -40,11 +41,13 @@ fn readers_bear_what_is_nearly_right() {
     let range = hostile::Range::new(place.path()).unwrap();
     for target in hostile::TARGETS {
         let mut fired = hostile::Fired::default();
+        // Whole runs take longer than a look.
+        let shots = if matches!(target, "resume" | "verify") { SHOTS / 5 } else { SHOTS };
         let failures: Vec<String> =
-            (1..=SHOTS).filter_map(|seed| range.fire(target, seed, &mut fired).err()).collect();
+            (1..=shots).filter_map(|seed| range.fire(target, seed, &mut fired).err()).collect();
         assert!(failures.is_empty(), "{} of {target}: {}", failures.len(), failures[0]);
         // Wounds that kill everything at the door would reach nothing behind it.
-        assert!((SHOTS / 100..SHOTS).contains(&fired.accepted), "{target}: {fired:?}");
+        assert!((shots / 100..shots).contains(&fired.accepted), "{target}: {fired:?}");
     }
 }
 
@@ -89,7 +92,7 @@ fn a_late_start_changes_no_step() {
             let begun = Simulation::start(&scenario, gas, &mut NoLaps).unwrap();
             let mut saved = begun.saved_state(0, 0);
             saved.time = start;
-            let mut simulation = Simulation::resume(&scenario, saved);
+            let mut simulation = Simulation::resume(&scenario, saved).unwrap();
             for _ in 0..300 {
                 simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
             }
@@ -117,7 +120,7 @@ fn a_step_that_breaks_a_law_is_found() {
         let mut saved = simulation.saved_state(0, 0);
         let columns = saved.columns.to_mut();
         spoil(&mut columns.velocities, &mut columns.ids);
-        let spoilt = Simulation::resume(&scenario, saved);
+        let spoilt = Simulation::resume(&scenario, saved).map_err(|misfit| misfit.to_string())?;
         Laws::of(&scenario, simulation.gas()).check(&spoilt)
     };
     assert_eq!(spoilt(&|_, _| {}), Ok(()));

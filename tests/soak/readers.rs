@@ -3,18 +3,29 @@
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{DVec2, DVec3};
 use grainflow::export::{Format, Request, export};
+use grainflow::record::history::History;
 use grainflow::record::reader::{last_state, read_log};
 use grainflow::record::recover::recover;
 use grainflow::replay::compute::{Basis, compute};
 use grainflow::replay::selection::Selection;
 use grainflow::replay::tables::tables_of;
 use grainflow::report::render;
+use grainflow::run::Status;
+use grainflow::run::resume::Resumption;
+use grainflow::run::verify::verify;
+use grainflow::scenario::model::AnyScenario;
+use grainflow::scenario::{Overrides, parse};
 use grainflow::view::ViewedLog;
 
+use super::hostile::is_small;
 use super::requests::Door;
+
+/// Looks at a run before it is stopped.
+const LOOKS: u32 = 12;
 
 const FORMATS: [Format; 5] = [Format::Lammps, Format::Vtp, Format::Vti, Format::Xyz, Format::Csv];
 
@@ -51,6 +62,47 @@ pub(crate) fn replayed(log: &Path) -> bool {
     [Basis::States, Basis::Frames]
         .map(|basis| compute(log, &names, Selection::default(), Some(basis)).is_ok())
         .contains(&true)
+}
+
+/// A run that goes on for a few steps, to its own end or beyond.
+pub(crate) fn resumed(log: &Path, choice: usize) -> bool {
+    let Some(engine) = engine_of_small(log) else { return false };
+    let longer = if engine == "event-driven" { "run.time=2.0" } else { "run.steps=9" };
+    let sets: Vec<String> = if choice.is_multiple_of(4) { Vec::new() } else { vec![longer.to_owned()] };
+    let Ok(resumption) = Resumption::open(log, &sets) else { return false };
+    let (stop, folder) = (AtomicBool::new(false), log.with_file_name("resumed"));
+    let outcome = resumption.run(&folder, true, &stop, &mut stopper(&stop));
+    let _ = fs::remove_dir_all(&folder);
+    outcome.is_ok()
+}
+
+/// A run that is made once more, for its first steps.
+pub(crate) fn verified(log: &Path) -> bool {
+    let stop = AtomicBool::new(false);
+    engine_of_small(log).is_some() && verify(log, &stop, &mut stopper(&stop)).is_ok()
+}
+
+/// Stops a run after a few looks.
+fn stopper(stop: &AtomicBool) -> impl FnMut(&Status) + Send {
+    let mut looks = 0;
+    move |_| {
+        looks += 1;
+        stop.store(looks > LOOKS, Relaxed);
+    }
+}
+
+/// The engine of the log, if all its scenarios begin within a moment.
+fn engine_of_small(log: &Path) -> Option<String> {
+    let history = History::read(log).ok()?;
+    let earlier = history.earlier.iter().map(|part| part.scenario.as_str());
+    let are_small = earlier.chain([history.scenario.as_str()]).all(|text| {
+        match parse("fire", text, &Overrides::default()) {
+            Ok(AnyScenario::Two(scenario)) => is_small(&scenario),
+            Ok(AnyScenario::Three(scenario)) => is_small(&scenario),
+            Err(_) => true,
+        }
+    });
+    are_small.then(|| history.value("engine").to_owned())
 }
 
 /// An export in the format number `choice`, of frames or of states.

@@ -74,10 +74,34 @@ impl<V: Vector> World<V> {
         let gap = libm::pow(V::DENSEST_PACKING / fraction, 1.0 / V::DIMENSION as f64) - 1.0;
         let half_width = (SHARE_OF_GAP * gap).clamp(HALF_WIDTHS.0, HALF_WIDTHS.1) * diameter;
         let reach = diameter + 2.0 * half_width;
-        // Only one image of a neighbour may be near: three cells must fit along each periodic axis.
-        let wide = (0..V::DIMENSION)
-            .all(|axis| !self.laws.boundary.is_periodic(axis) || self.laws.size[axis] > 3.01 * reach);
-        if wide { Arrangement { side: reach, half_width: Some(half_width) } } else { self.with_cells() }
+        if self.is_wide_for(reach) {
+            Arrangement { side: reach, half_width: Some(half_width) }
+        } else {
+            self.with_cells()
+        }
+    }
+
+    /// Whether lists that reach so far have room [length]: only one image of a neighbour may be near, and three cells must
+    /// fit along each periodic axis.
+    fn is_wide_for(&self, reach: f64) -> bool {
+        (0..V::DIMENSION)
+            .all(|axis| !self.laws.boundary.is_periodic(axis) || self.laws.size[axis] > 3.01 * reach)
+    }
+
+    /// Whether there can be so many cells along each axis, and lists of this half-width [length], when they were made for
+    /// at most so many `grains`.
+    pub(super) fn may_have(&self, counts: [u32; 3], half_width: Option<f64>, grains: u64) -> bool {
+        let diameter = self.laws.largest_diameter();
+        let Some(half_width) = half_width else {
+            let wish = self.least_side(grains as f64).max(diameter);
+            let most = Cells::counts_of(self.laws.size, diameter, wish);
+            return counts.iter().zip(most).all(|(&count, most)| (1..=most).contains(&count));
+        };
+        let reach = diameter + 2.0 * half_width;
+        self.structure != Structure::Cells
+            && (HALF_WIDTHS.0 * diameter..=HALF_WIDTHS.1 * diameter).contains(&half_width)
+            && self.is_wide_for(reach)
+            && counts == Cells::counts_of(self.laws.size, reach, reach)
     }
 
     /// Share of the box that the grains fill at their full size.
@@ -89,12 +113,18 @@ impl<V: Vector> World<V> {
     /// The side of a cell that holds a grain or so; a grain that falls comes to lie near others [length].
     fn cell_side(&self) -> f64 {
         let (volume, grains) = (self.laws.size.product(), self.bodies.len() as f64);
-        let root = |volume: f64| libm::pow(volume, 1.0 / V::DIMENSION as f64);
-        let least = root(volume / (MOST_CELLS.0 * grains + MOST_CELLS.1));
+        let least = self.least_side(grains);
         if self.falls {
             return least;
         }
-        root(GRAINS_PER_CELL[V::DIMENSION - 2] * volume / grains.max(1.0)).max(least)
+        let share = GRAINS_PER_CELL[V::DIMENSION - 2] * volume / grains.max(1.0);
+        libm::pow(share, 1.0 / V::DIMENSION as f64).max(least)
+    }
+
+    /// The side of the smallest cells that so many `grains` are given [length].
+    fn least_side(&self, grains: f64) -> f64 {
+        let volume = self.laws.size.product() / (MOST_CELLS.0 * grains + MOST_CELLS.1);
+        libm::pow(volume, 1.0 / V::DIMENSION as f64)
     }
 
     /// Puts all grains, which are up to date, into new cells and into order, and makes their lists.

@@ -51,14 +51,18 @@ pub(super) struct Around {
 impl<V: Vector> Cells<V> {
     /// Empty cells of at least `reach`, and of about `wish`, on each side, in the box of `size` [length].
     pub(super) fn new(size: V, boundary: &Boundary<V>, reach: f64, wish: f64) -> Self {
+        let periodic = [0, 1, 2].map(|axis| axis < V::DIMENSION && boundary.is_periodic(axis));
+        Self::with_counts(size, Self::counts_of(size, reach, wish), periodic)
+    }
+
+    /// How many cells of at least `reach`, and of about `wish`, on each side there are along each axis of `size` [length].
+    pub(super) fn counts_of(size: V, reach: f64, wish: f64) -> [u32; 3] {
         let mut counts = [1; 3];
-        let mut periodic = [false; 3];
         for axis in 0..V::DIMENSION {
             let most = (size[axis] / (reach * SLACK)).floor();
             counts[axis] = (size[axis] / wish).round().min(most).clamp(1.0, 1e9) as u32;
-            periodic[axis] = boundary.is_periodic(axis);
         }
-        Self::with_counts(size, counts, periodic)
+        counts
     }
 
     /// Empty cells, `counts` along each axis.
@@ -80,6 +84,23 @@ impl<V: Vector> Cells<V> {
     /// Cells along each axis.
     pub(super) fn counts(&self) -> [u32; 3] {
         self.counts
+    }
+
+    /// Number of all cells.
+    pub(super) fn number(&self) -> usize {
+        self.heads.len()
+    }
+
+    /// Sides of a cell [length].
+    pub(super) fn side(&self) -> V {
+        self.side
+    }
+
+    /// Whether `cell` has a neighbour beyond `face`.
+    pub(super) fn has_beyond(&self, cell: u32, face: Face) -> bool {
+        let axis = face.axis();
+        let last = if face.upper { self.counts[axis] - 1 } else { 0 };
+        self.periodic[axis] || self.coordinates(cell)[axis] != last
     }
 
     /// Empties all cells.

@@ -105,6 +105,13 @@ impl CollapseWatch {
         CollapseWatch { start, seen }
     }
 
+    /// Whether this is the watch over a world of so many `rows`.
+    pub(super) fn is_over(&self, rows: usize) -> bool {
+        !self.start.is_nan()
+            && self.seen.len() <= Self::GRAINS
+            && self.seen.iter().all(|&(row, _)| (row as usize) < rows)
+    }
+
     /// Forgets the window: rows have been renumbered.
     pub(super) fn forget(&mut self) {
         *self = Self::new();

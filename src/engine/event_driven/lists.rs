@@ -27,8 +27,8 @@ pub(super) struct Lists<V> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Span {
     first: u32,
-    number: u16,
-    room: u16,
+    number: u32,
+    room: u32,
 }
 
 impl<V: Vector> Lists<V> {
@@ -135,7 +135,7 @@ impl<V: Vector> Lists<V> {
         let span = &mut self.spans[row as usize];
         if span.number == span.room {
             // The list moves to the end of the pool; what it leaves is won back when all lists are made anew.
-            let room = (span.room + span.room / 2).max(span.number + SPARE_PLACES as u16);
+            let room = (span.room + span.room / 2).max(span.number + SPARE_PLACES);
             let first = self.pool.len() as u32;
             let old = span.first as usize..span.first as usize + span.number as usize;
             self.pool.extend_from_within(old);
@@ -150,5 +150,35 @@ impl<V: Vector> Lists<V> {
     pub(super) fn is_wasteful(&self) -> bool {
         let used: usize = self.spans.iter().map(|span| span.room as usize).sum();
         self.pool.len() > 2 * used
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::boundary::{AxisBoundary, Boundary, Face};
+    use glam::DVec2;
+
+    /// One giant among very many small grains, as in mixtures of extreme diameters.
+    #[test]
+    fn a_list_may_hold_more_neighbours_than_sixteen_bits_count() {
+        let small: u32 = 70_000;
+        let side = 100.0;
+        let places = (0..small).map(|k| DVec2::new(f64::from(k % 300), f64::from(k / 300)) * 0.3);
+        let anchors: Vec<DVec2> = std::iter::once(DVec2::splat(50.0)).chain(places).collect();
+        let mut bodies = vec![Body::<DVec2>::default(); anchors.len()];
+        let mut plans = vec![Plan::default(); anchors.len()];
+        let boundary = Boundary { axes: [AxisBoundary::Faces { lower: Face::Open, upper: Face::Open }; 3] };
+        let mut cells = Cells::new(DVec2::splat(side), &boundary, side, side);
+        for row in 0..anchors.len() as u32 {
+            cells.insert(0, row, &mut bodies, &mut plans);
+        }
+        let mut lists = Lists::new(0.1);
+        lists.reset(anchors);
+        lists.find(0, &cells, &bodies, &plans, |one, other| if one.min(other) == 0 { side } else { 0.1 });
+        assert_eq!(lists.of(0).len(), small as usize);
+        assert!((1..=small).all(|row| lists.of(row) == [0]));
+        lists.withdraw(0);
+        assert!((0..=small).all(|row| lists.of(row).is_empty()));
     }
 }

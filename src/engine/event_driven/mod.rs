@@ -13,6 +13,7 @@ mod cells;
 mod collapse;
 pub mod contact;
 mod events;
+mod fit;
 pub mod growth;
 pub mod laws;
 mod lists;
@@ -27,7 +28,7 @@ mod year;
 
 use crate::engine::cell_counts::CellCount;
 use crate::engine::report::StepReport;
-use crate::engine::{Engine, EngineError, EngineState, Horizon, Laps};
+use crate::engine::{Engine, EngineError, EngineMisfit, EngineState, Horizon, Laps};
 use crate::matter::gas::{Gas, SortSpace};
 use crate::space::Vector;
 use body::Event;
@@ -158,8 +159,13 @@ impl<V: Vector> Engine<V> for EventDriven<V> {
         self.world.as_ref().map_or_else(EngineState::default, World::state)
     }
 
-    fn restore(&mut self, state: &EngineState) {
-        self.world = World::restored(&self.laws, self.structure, state);
+    fn restore(&mut self, state: &EngineState, gas: &Gas<V>) -> Result<(), EngineMisfit> {
+        let begins = state.numbers.is_empty() && state.words.is_empty();
+        self.world = match begins {
+            true => None,
+            false => Some(World::restored(&self.laws, self.structure, state, gas)?),
+        };
+        Ok(())
     }
 
     fn forget_pace(&mut self) {

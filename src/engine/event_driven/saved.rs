@@ -9,8 +9,9 @@ use super::lists::Lists;
 use super::rules::Structure;
 use super::world::World;
 use super::year::Pace;
-use crate::engine::EngineState;
+use crate::engine::{EngineMisfit, EngineState};
 use crate::matter::clock::Clock;
+use crate::matter::gas::Gas;
 use crate::space::Vector;
 
 /// Numbers and words that are read in the order in which they were written.
@@ -19,30 +20,36 @@ struct Tape<'a> {
     words: std::slice::Iter<'a, u32>,
 }
 
+const CUT_OFF: EngineMisfit = EngineMisfit("it is cut off");
+
 impl Tape<'_> {
-    fn number(&mut self) -> Option<f64> {
-        self.numbers.next().copied()
+    fn number(&mut self) -> Result<f64, EngineMisfit> {
+        self.numbers.next().copied().ok_or(CUT_OFF)
     }
-    fn word(&mut self) -> Option<u32> {
-        self.words.next().copied()
+    fn word(&mut self) -> Result<u32, EngineMisfit> {
+        self.words.next().copied().ok_or(CUT_OFF)
     }
-    fn long(&mut self) -> Option<u64> {
-        Some(u64::from(self.word()?) | u64::from(self.word()?) << 32)
+    fn long(&mut self) -> Result<u64, EngineMisfit> {
+        Ok(u64::from(self.word()?) | u64::from(self.word()?) << 32)
     }
-    fn watch(&mut self) -> Option<CollapseWatch> {
-        let start = self.number()?;
-        let mut seen = Vec::new();
-        while let Some(row) = self.word() {
-            seen.push((row, self.word()?));
+    /// The watch for collapse, which is what remains; older states have none.
+    fn watch(&mut self) -> Result<CollapseWatch, EngineMisfit> {
+        if self.numbers.as_slice().is_empty() && self.words.as_slice().is_empty() {
+            return Ok(CollapseWatch::default());
         }
-        Some(CollapseWatch::restored(start, seen))
+        let start = self.number()?;
+        let (pairs, rest) = self.words.as_slice().as_chunks::<2>();
+        if !(self.numbers.as_slice().is_empty() && rest.is_empty()) {
+            return Err(EngineMisfit("it has more numbers than its grains need"));
+        }
+        Ok(CollapseWatch::restored(start, pairs.iter().map(|&[row, before]| (row, before)).collect()))
     }
-    fn vector<V: Vector>(&mut self) -> Option<V> {
+    fn vector<V: Vector>(&mut self) -> Result<V, EngineMisfit> {
         let mut vector = V::ZERO;
         for axis in 0..V::DIMENSION {
             vector[axis] = self.number()?;
         }
-        Some(vector)
+        Ok(vector)
     }
 }
 
@@ -104,8 +111,13 @@ impl<V: Vector> World<V> {
         }
     }
 
-    /// Takes up what [`World::state`] gave, under the same laws; `None` where it does not fit them.
-    pub(super) fn restored(laws: &Laws<V>, structure: Structure, state: &EngineState) -> Option<Self> {
+    /// Takes up what [`World::state`] gave, under the same laws and with the grains of `gas`.
+    pub(super) fn restored(
+        laws: &Laws<V>,
+        structure: Structure,
+        state: &EngineState,
+        gas: &Gas<V>,
+    ) -> Result<Self, EngineMisfit> {
         let mut tape = Tape { numbers: state.numbers.iter(), words: state.words.iter() };
         let mut world = World::empty(laws, structure);
         world.origin = Clock::restored(tape.number()?, tape.number()?);
@@ -121,44 +133,49 @@ impl<V: Vector> World<V> {
         let grains = tape.word()?;
         world.next_id = tape.word()?;
         let counts = [tape.word()?, tape.word()?, tape.word()?];
-        let periodic = [0, 1, 2].map(|axis| axis < V::DIMENSION && laws.boundary.is_periodic(axis));
-        world.cells = Cells::with_counts(laws.size, counts, periodic);
         world.pace.events = tape.long()?;
         world.pace.collisions = tape.long()?;
         world.pace.crossings = tape.long()?;
         world.pace.crossings_since_order = tape.long()?;
         world.pace.arranged_for = tape.long()?;
         world.pace.gone = tape.long()?;
+        let lists = (half_width != -1.0).then(|| Lists::new(half_width));
+        if year != world.pace.year() {
+            return Err(EngineMisfit("its year has another length than its pace"));
+        }
+        world.check_frame(counts, lists.as_ref().map(Lists::half_width), gas)?;
+        let periodic = [0, 1, 2].map(|axis| axis < V::DIMENSION && laws.boundary.is_periodic(axis));
+        world.cells = Cells::with_counts(laws.size, counts, periodic);
         world.spins = laws.roughness.map(|_| Vec::new());
         world.species = (!laws.species.is_empty()).then(Vec::new);
         world.last_collisions = laws.cure.contact_time.map(|_| Vec::new());
-        let mut anchors = (half_width >= 0.0).then(Vec::new);
+        let mut anchors = lists.is_some().then(Vec::new);
         for _ in 0..grains {
             world.read_grain(&mut tape, &mut anchors)?;
         }
-        // Older states have none.
-        world.watch = tape.watch().unwrap_or_default();
-        world.lists = anchors.map(|anchors| {
-            let mut lists = Lists::new(half_width);
-            lists.reset(anchors);
+        world.watch = tape.watch()?;
+        world.lists = lists.map(|mut lists| {
+            lists.reset(anchors.unwrap_or_default());
             lists
         });
+        world.check_grains(gas)?;
         world.walls.set_origin(world.origin);
         world.link();
         world.calendar.begin(year, world.pace.planned);
         for (row, plan) in world.plans.iter().enumerate() {
             world.calendar.write(Entry { time: plan.time, id: world.ids[row], row: row as u32 });
         }
-        Some(world)
+        Ok(world)
     }
 
-    fn read_grain(&mut self, tape: &mut Tape<'_>, anchors: &mut Option<Vec<V>>) -> Option<()> {
+    fn read_grain(&mut self, tape: &mut Tape<'_>, anchors: &mut Option<Vec<V>>) -> Result<(), EngineMisfit> {
         let (position, velocity) = (tape.vector()?, tape.vector()?);
         let (time, plan_time, contact_time) = (tape.number()?, tape.number()?, tape.number()?);
         self.ids.push(tape.word()?);
         self.bodies.push(Body { position, velocity, time, collisions: tape.word()?, next: NONE });
         let cell = tape.word()?;
-        let event = event(tape.word()?)?;
+        let event =
+            event(tape.word()?).filter(is_along_an_axis::<V>).ok_or(EngineMisfit("an event is none"))?;
         let contact = Contact { time: contact_time, partner: tape.word()?, collisions: tape.word()? };
         self.plans.push(Plan { time: plan_time, contact, cell, event });
         if let Some(spins) = &mut self.spins {
@@ -175,9 +192,11 @@ impl<V: Vector> World<V> {
             anchors.push(tape.vector()?);
         }
         if let Some(species) = &mut self.species {
-            species.push(tape.word()? as u8);
+            let kind =
+                u8::try_from(tape.word()?).ok().filter(|&kind| usize::from(kind) < self.laws.species.len());
+            species.push(kind.ok_or(EngineMisfit("a grain is of no species"))?);
         }
-        Some(())
+        Ok(())
     }
 }
 
@@ -192,6 +211,14 @@ fn code(event: Event) -> u32 {
         Event::Outlook => 4,
         Event::Crossing(face) => 8 | side(face),
         Event::Wall(face) => 16 | side(face),
+    }
+}
+
+/// Whether the face of `event`, if it has one, is normal to an axis of space.
+fn is_along_an_axis<V: Vector>(event: &Event) -> bool {
+    match event {
+        Event::Crossing(face) | Event::Wall(face) => face.axis() < V::DIMENSION,
+        _ => true,
     }
 }
 

@@ -80,6 +80,16 @@ impl<V: Vector> Walls<V> {
         }
     }
 
+    /// Whether there is a wall at `face`.
+    pub(super) fn is_wall(&self, face: Face) -> bool {
+        matches!(self.sides[face.axis()][face.side()], Some(Side::Wall(_)))
+    }
+
+    /// Whether grains can leave the box anywhere.
+    pub(super) fn has_open_side(&self) -> bool {
+        self.sides.iter().flatten().any(|side| matches!(side, Some(Side::Open)))
+    }
+
     /// The wall at `face`.
     pub(super) fn wall(&self, face: Face) -> Wall<V> {
         match self.sides[face.axis()][face.side()] {

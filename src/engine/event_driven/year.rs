@@ -45,7 +45,31 @@ pub(super) struct Pace {
     pub(super) shortest_span: f64,
 }
 
+/// Events that a year of so many grains is planned for.
+fn planned_for(grains: u64) -> f64 {
+    let (per_grain, least) = EVENTS_PER_YEAR;
+    per_grain * grains as f64 + least
+}
+
 impl Pace {
+    /// Length of the year [time].
+    pub(super) fn year(&self) -> f64 {
+        let year = self.planned / self.rate;
+        // Where nothing moves any length will do.
+        if year.is_finite() && year > 0.0 { year } else { 1.0 }
+    }
+
+    /// Whether this is the pace of a world that has had at most so many `grains`.
+    pub(super) fn is_of(&self, grains: u64) -> bool {
+        let counts = [self.events, self.collisions, self.crossings, self.crossings_since_order];
+        (0.0..=f64::MAX).contains(&self.rate)
+            && (planned_for(0)..=planned_for(grains)).contains(&self.planned)
+            && self.shortest_span == SHORTEST_SPAN * self.year()
+            && counts.iter().all(|&count| count < 1 << 60)
+            && self.arranged_for <= grains
+            && self.gone <= grains
+    }
+
     /// Mean time between events of one of `grains` grains [time].
     pub(super) fn time_between_events(&self, grains: usize) -> f64 {
         grains as f64 / self.rate
@@ -69,11 +93,8 @@ impl<V: Vector> World<V> {
     }
 
     fn open_year(&mut self) {
-        let (per_grain, least) = EVENTS_PER_YEAR;
-        self.pace.planned = per_grain * self.bodies.len() as f64 + least;
-        let year = self.pace.planned / self.pace.rate;
-        // Where nothing moves any length will do.
-        let year = if year.is_finite() && year > 0.0 { year } else { 1.0 };
+        self.pace.planned = planned_for(self.bodies.len() as u64);
+        let year = self.pace.year();
         self.pace.shortest_span = SHORTEST_SPAN * year;
         (self.pace.events, self.pace.collisions, self.pace.crossings) = (0, 0, 0);
         self.calendar.begin(year, self.pace.planned);

@@ -21,7 +21,7 @@ pub(super) fn places<V: Vector>(
     scenario: &Scenario<V>,
     species: Option<&[u8]>,
 ) -> Result<Vec<V>, InitialError> {
-    let mut gas = dilute(scenario, species);
+    let mut gas = dilute(scenario, species)?;
     let seed = Streams::new(scenario.seed).derived_seed(Phase::InitialPositions);
     if gas.grain.diameter < scenario.grain.diameter {
         let (size, quiet) = (scenario.size, scenario.boundary.at_rest());
@@ -35,7 +35,7 @@ pub(super) fn places<V: Vector>(
 }
 
 /// A gas of grains that are small enough to be put in one by one, moving at about a diameter per unit of time.
-fn dilute<V: Vector>(scenario: &Scenario<V>, species: Option<&[u8]>) -> Gas<V> {
+fn dilute<V: Vector>(scenario: &Scenario<V>, species: Option<&[u8]>) -> Result<Gas<V>, InitialError> {
     let full = diameters(scenario, species);
     let thinner = (DILUTE[V::DIMENSION] / scenario.volume_fraction()).powf(1.0 / V::DIMENSION as f64);
     let mut scale = thinner.min(1.0);
@@ -62,11 +62,11 @@ fn dilute<V: Vector>(scenario: &Scenario<V>, species: Option<&[u8]>) -> Gas<V> {
         spins: None,
         species: species.map(<[u8]>::to_vec),
     };
-    let mut gas = ready(scenario, columns);
+    let mut gas = ready(scenario, columns)?;
     gas.clock = Clock::default();
     gas.grain.diameter *= scale;
     for grain in &mut gas.species {
         grain.diameter *= scale;
     }
-    gas
+    Ok(gas)
 }

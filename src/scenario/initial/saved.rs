@@ -34,7 +34,7 @@ pub(super) fn gas<V: Vector>(scenario: &Scenario<V>, mut saved: Columns<V>) -> R
     } else if saved.spins.is_none() {
         saved.spins = Some(vec![V::Spin::default(); saved.len()]);
     }
-    let gas = ready(scenario, saved);
+    let gas = ready(scenario, saved)?;
     if scenario.engine.kind.is_event_driven() {
         let number = overlaps(&gas, scenario.boundary.fixed_walls());
         if number > 0 {
