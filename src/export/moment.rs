@@ -2,7 +2,7 @@
 
 use crate::record::contents::Frame;
 use crate::record::state::SavedState;
-use crate::replay::kinds::Kinds;
+use crate::scenario::kinds::Kinds;
 use crate::space::Vector;
 
 /// The grains at one time, in rising identity.
