@@ -108,7 +108,10 @@ impl<'a, V: Vector> Laws<'a, V> {
         let obstacles = [
             (!scenario.species.is_empty(), "grains of several kinds"),
             (scenario.roughness.is_some(), "rough grains"),
-            (!matches!(scenario.restitution, RestitutionLaw::Constant(_)), "a restitution that is no constant"),
+            (
+                !matches!(scenario.restitution, RestitutionLaw::Constant(_)),
+                "a restitution that is no constant",
+            ),
             (!self.is_chaotic, "an engine.impact_parameter other than molecular chaos"),
         ];
         obstacles.into_iter().find(|(stands, _)| self.is_free() && *stands).map(|(_, words)| words)

@@ -59,7 +59,8 @@ impl<'a, V: Vector> Theory<'a, V> {
         if laws.contacts() == Contacts::OfGrains {
             let is_inelastic = laws.homogeneous_restitution().is_some_and(|r| r < 1.0);
             if displaced && is_inelastic {
-                other_pressures += "; cba and hsmc carry 2r in place of 1 + r unless transfer = \"corrected\"";
+                other_pressures +=
+                    "; cba and hsmc carry 2r in place of 1 + r unless transfer = \"corrected\"";
             }
             if of_points {
                 other_pressures += "; dsmc, of points, has 1";
@@ -206,7 +207,8 @@ impl<'a, V: Vector> Theory<'a, V> {
             "collision_frequency" => frequency(&|frequency| frequency),
             "mean_free_time" => frequency(&|frequency| 1.0 / frequency),
             "mean_free_path" => {
-                let source = format!("mean speed over collision frequency of a Maxwell gas{}", self.exception);
+                let source =
+                    format!("mean speed over collision frequency of a Maxwell gas{}", self.exception);
                 Some((self.laws.mean_free_path()?, source))
             }
             "impact_c" => self.laws.is_chaotic().then(|| (0.0, "molecular chaos".to_owned())),

@@ -50,7 +50,7 @@ mod tests {
             velocities: vec![[1.0, 0.0, 0.0]; 2],
             ..Frame::default()
         };
-        let mut camera = Camera::new(None, 1.0);
+        let mut camera = Camera::new(None, Kinds::default());
         let frames = [Frame::default(), frame(2.0), frame(6.0)];
         frames.iter().for_each(|frame| camera.see(frame));
         let size = |frame: &Frame| {

@@ -9,8 +9,8 @@ use super::evidence::Evidence;
 use super::figures;
 use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
-use super::setup::Setup;
 use super::reference::{Reference, references};
+use super::setup::Setup;
 use crate::observe::measure::Dimension;
 
 /// Title, sentence, figures.
@@ -148,6 +148,7 @@ fn facts(evidence: &Evidence<'_>) -> String {
     let facts = [
         ("particles_final", "grains at the end", String::new()),
         ("simulated_time", "simulated time", evidence.setup.named(2)),
+        ("resumed_at", "resumed at", evidence.setup.named(2)),
         ("collisions_per_particle", "collisions per particle", String::new()),
         ("temperature", "granular temperature at the end", energy),
         ("wall_seconds", "computing time", "s".to_owned()),

@@ -191,7 +191,9 @@ fn references(evidence: &Evidence<'_>) -> String {
 fn missing_theory(setup: &Setup) -> String {
     let sentence = match (&setup.known, &setup.unreadable) {
         (Some(known), _) => laws::obstacle(&known.scenario).map(|obstacle| {
-            format!("No law of a homogeneous gas is shown: theory as it is used here does not know {obstacle}.")
+            format!(
+                "No law of a homogeneous gas is shown: theory as it is used here does not know {obstacle}."
+            )
         }),
         (None, Some(reason)) => Some(format!(
             "The scenario in the log cannot be read by this version ({}). So nothing is said of theory, of walls that move and \

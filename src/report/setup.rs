@@ -208,7 +208,11 @@ impl Setup {
             diameter: text.diameter,
             kinds: Kinds::of_diameter(text.diameter),
             units: text.units,
-            unreadable: Some(if log.scenario.is_empty() { "it is not there".to_owned() } else { reason.to_owned() }),
+            unreadable: Some(if log.scenario.is_empty() {
+                "it is not there".to_owned()
+            } else {
+                reason.to_owned()
+            }),
             ..Self::nothing()
         }
     }
@@ -241,11 +245,6 @@ impl Setup {
         self.has_open_side = sides.any(|side| side == "open");
         self.periodic_axes =
             std::array::from_fn(|axis| walls.sides[axis].iter().all(|side| side == "periodic"));
-    }
-
-    /// Constant normal restitution; `None` for another law.
-    pub(crate) fn restitution(&self) -> Option<f64> {
-        self.known.as_ref()?.restitution
     }
 
     /// Grains that the source pours, and how many per time.
@@ -343,7 +342,7 @@ mod tests {
         assert_eq!(sheared.size, [20.0, 20.5, 30.0]);
         let shear = sheared.shear().unwrap();
         assert_eq!((shear.speed, shear.height, shear.is_alone), (1.0, 20.0, true));
-        assert_eq!((sheared.diameter, sheared.restitution()), (2.0, Some(0.9)));
+        assert_eq!((sheared.diameter, sheared.known.as_ref().unwrap().restitution), (2.0, Some(0.9)));
         assert!(!sheared.is_periodic && !sheared.has_gravity() && !sheared.is_undriven());
         assert_eq!(sheared.length_label("height"), "height [d]");
         let falling = setup(&format!("gravity = [0, 0, -1]\n{GAS}{walls}"));
@@ -353,9 +352,12 @@ mod tests {
     #[test]
     fn a_shaken_box_is_driven() {
         assert!(setup(GAS).is_undriven());
-        let still = format!("{GAS}[boundary]\nz.lower = {{ wall = \"smooth\" }}\nz.upper = {{ wall = \"smooth\" }}\n");
+        let still = format!(
+            "{GAS}[boundary]\nz.lower = {{ wall = \"smooth\" }}\nz.upper = {{ wall = \"smooth\" }}\n"
+        );
         assert!(setup(&still).is_undriven());
-        let shaken = still.replacen("wall = \"smooth\"", "wall = \"vibrating\", amplitude = 0.1, frequency = 1.0", 1);
+        let shaken =
+            still.replacen("wall = \"smooth\"", "wall = \"vibrating\", amplitude = 0.1, frequency = 1.0", 1);
         let shaken = setup(&shaken);
         assert!(shaken.unreadable.is_none() && !shaken.is_undriven(), "{:?}", shaken.unreadable);
     }
@@ -364,7 +366,7 @@ mod tests {
     fn a_text_of_another_version_says_less() {
         let newer = setup(&format!("{GAS}[engine.quantum]\nspin = 1\n"));
         assert!(newer.unreadable.as_ref().unwrap().contains("quantum"), "{newer:?}");
-        assert_eq!((newer.diameter, newer.restitution(), newer.volume_fraction), (2.0, None, None));
+        assert_eq!((newer.diameter, newer.volume_fraction), (2.0, None));
         assert!(newer.known.is_none() && !newer.is_undriven());
         let broken = setup("= [");
         assert_eq!((broken.title.as_str(), broken.known), ("run", None));

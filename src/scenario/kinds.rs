@@ -1,7 +1,7 @@
 //! How large and heavy the grains of a log are.
 
-use crate::matter::grain::Grain;
 use super::model::{AnyScenario, Scenario};
+use crate::matter::grain::Grain;
 use crate::space::Vector;
 
 /// Sizes and masses of the grains of a log, and which grain is of which kind.

@@ -26,7 +26,9 @@ impl Work<'_> {
         prepare(None).map_err(|error| Failure::Input(error.to_string()))?;
         let kinds = Kinds::of(&scenario, found.species);
         if kinds.are_untold() {
-            eprintln!("note: grains differ in size, but no saved state says which is which: all are drawn alike");
+            eprintln!(
+                "note: grains differ in size, but no saved state says which is which: all are drawn alike"
+            );
         }
         let view = View { walls: Some(walls_of(&scenario)), kinds, width };
         let written = write_pictures(self.log, target.working(), self.selection, &view, &STOP)?;
