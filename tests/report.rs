@@ -224,7 +224,7 @@ fn theory_of_smooth_equal_grains_is_for_them_alone() {
                  [[particles.species]]\ndiameter = 2.0\nmass = 4.0\nshare = 0.5\n";
     let event_driven = |scenario: &str| {
         let mut sample = cooling();
-        sample.log.scenario = format!("{scenario}").replace("\"hsmc\"", "\"event-driven\"");
+        sample.log.scenario = scenario.replace("\"hsmc\"", "\"event-driven\"");
         sample.summary.insert("engine".to_owned(), "event-driven".into());
         page(&sample)
     };

@@ -42,8 +42,10 @@ pub(crate) struct Laws<'a, V> {
     scenario: &'a Scenario<V>,
     /// Contacts of all engines in question; those of grains where engines differ.
     contacts: Contacts,
-    /// Whether every impact parameter of the cross-section is alike.
+    /// Whether every impact parameter of the cross-section is alike; where engines differ, of the one that decides itself.
     is_chaotic: bool,
+    /// Whether some engines follow other impact parameters, and others do not.
+    are_some_glancing: bool,
     /// ν.
     volume_fraction: f64,
 }
@@ -66,7 +68,8 @@ impl<'a, V: Vector> Laws<'a, V> {
         Laws {
             scenario,
             contacts: if is_shared { first } else { Contacts::OfGrains },
-            is_chaotic: !(is_given && engines.iter().any(obeys)),
+            is_chaotic: !(is_given && engines.iter().all(obeys)),
+            are_some_glancing: is_given && engines.iter().any(obeys) && !engines.iter().all(obeys),
             volume_fraction: scenario.volume_fraction(),
         }
     }
@@ -76,9 +79,9 @@ impl<'a, V: Vector> Laws<'a, V> {
         self.contacts
     }
 
-    /// Whether pairs collide by molecular chaos as far as the engine decides it.
-    pub(crate) fn is_chaotic(&self) -> bool {
-        self.is_chaotic
+    /// Whether some engines follow impact parameters that the scenario gives, and others do not.
+    pub(crate) fn are_some_glancing(&self) -> bool {
+        self.are_some_glancing
     }
 
     /// r of smooth grains of one kind and constant restitution.

@@ -45,7 +45,7 @@ impl<'a, V: Vector> Theory<'a, V> {
             engines.iter().any(|engine| Contacts::of(engine, scenario.engine.transfer) == contacts)
         };
         let (of_points, displaced) = (has(Contacts::OfPoints), has(Contacts::Displaced));
-        let exception = match laws.contacts() {
+        let mut exception = match laws.contacts() {
             Contacts::OfPoints => "; g = 1, a gas of points".to_owned(),
             _ if of_points => {
                 let factor = rounded(V::contact_correlation(scenario.volume_fraction()));
@@ -55,7 +55,13 @@ impl<'a, V: Vector> Theory<'a, V> {
             }
             _ => String::new(),
         };
-        let mut other_pressures = String::new();
+        let unlike = if laws.are_some_glancing() {
+            "; engines that follow engine.impact_parameter differ"
+        } else {
+            ""
+        };
+        exception += unlike;
+        let mut other_pressures = unlike.to_owned();
         if laws.contacts() == Contacts::OfGrains {
             let is_inelastic = laws.homogeneous_restitution().is_some_and(|r| r < 1.0);
             if displaced && is_inelastic {
@@ -188,7 +194,7 @@ impl<'a, V: Vector> Theory<'a, V> {
                 ("velocity-distribution" | "velocity-distribution-mean", "probability_density") => {
                     ("Maxwell", "one component, in thermal velocities", Box::new(maxwell_density))
                 }
-                ("impact-parameter", "probability_density") if self.laws.is_chaotic() => (
+                ("impact-parameter", "probability_density") => (
                     "molecular chaos",
                     "every place of the cross-section alike (Müller 2001, 3.6.1)",
                     Box::new(chaotic_impact_density::<V>),
@@ -211,7 +217,7 @@ impl<'a, V: Vector> Theory<'a, V> {
                     format!("mean speed over collision frequency of a Maxwell gas{}", self.exception);
                 Some((self.laws.mean_free_path()?, source))
             }
-            "impact_c" => self.laws.is_chaotic().then(|| (0.0, "molecular chaos".to_owned())),
+            "impact_c" => Some((0.0, "molecular chaos".to_owned())),
             "velocity_profile_slope" => {
                 let linear = "a straight line from wall to wall (Müller 2001, 3.3)";
                 self.laws.shear().map(|_| (1.0, linear.to_owned()))
