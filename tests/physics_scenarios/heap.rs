@@ -13,11 +13,11 @@ use super::trial::{advance_until, figures, for_each, run, scenario, start};
 
 const SEEDS: [u64; 4] = [1, 2, 3, 4];
 
-/// Six heaps of 600 grains at r = 0.9 and 0.97, 100 time units after the last one (`sweep heap --replicas 6`).
-const OF_600: Known = Known { mean: 0.4587, error: 0.0098, heaps: 6.0 };
-const FLAT_OF_600: Known = Known { mean: 0.1403, error: 0.0039, heaps: 6.0 };
-/// Eight heaps of 1500 grains at r = 0.9.
-const OF_1500: Known = Known { mean: 0.600, error: 0.010, heaps: 8.0 };
+/// Five heaps of 600 grains at r = 0.9 and 0.97, 100 time units after the last one (`sweep heap`).
+const OF_600: Known = Known { mean: 0.460, error: 0.0119, heaps: 5.0 };
+const FLAT_OF_600: Known = Known { mean: 0.1425, error: 0.0040, heaps: 5.0 };
+/// Seven heaps of 1500 grains at r = 0.9.
+const OF_1500: Known = Known { mean: 0.610, error: 0.0083, heaps: 7.0 };
 /// Four heaps of 3000 grains at r = 0.9 (docs/sweeps.md).
 const OF_3000: Known = Known { mean: 0.681, error: 0.008, heaps: 4.0 };
 
