@@ -182,7 +182,12 @@ fn what_is_driven_or_unknown_has_no_law() {
             && compared.remarks.is_empty()
     };
     assert!(none("pipe", &[]) && none("heap", &[]) && none("simic-cooling", &[]));
-    assert!(none("cooling", &["particles.restitution={law='velocity-dependent',r0=0.9,v0=1}"]));
+    let mut viscoelastic =
+        comparison("cooling", &["particles.restitution={law='velocity-dependent',r0=0.9,v0=1}"], &["hsmc"]);
+    viscoelastic.series.push(over("temperature", "time", "temperature", &HEAT));
+    add(&mut viscoelastic);
+    assert!(viscoelastic.series[0].theory.is_empty());
+    assert!(viscoelastic.remarks[0].contains("a restitution that is no constant"), "{viscoelastic:?}");
     assert!(!none("cooling", &[]));
     let mut unknown = comparison("cooling", &[], &["hsmc"]);
     unknown.scenario_text = "nonsense".to_owned();

@@ -351,7 +351,8 @@ mod tests {
 
     #[test]
     fn a_shaken_box_is_driven() {
-        assert!(setup(GAS).is_undriven());
+        let free = setup(&format!("{GAS}[boundary]\nx = \"periodic\"\ny = \"periodic\"\nz = \"periodic\"\n"));
+        assert!(free.is_undriven() && free.is_periodic, "{:?}", free.unreadable);
         let still = format!(
             "{GAS}[boundary]\nz.lower = {{ wall = \"smooth\" }}\nz.upper = {{ wall = \"smooth\" }}\n"
         );
