@@ -9,44 +9,12 @@ use std::time::{Duration, Instant};
 
 use grainflow::record::reader::{last_state, read_log};
 use grainflow::scenario::builtin;
+use grainflow::simulation::figures::{KEYS, Kind};
 use serde_json::{Map, Value};
 
 /// A gas that is done in no time.
 const QUICK: [&str; 6] =
     ["run", "cooling", "--set", "particles.count=300", "--set", "run.collisions_per_particle=3"];
-
-/// Every key of a summary that scripts rely on, beside the scenario's own figures.
-const SUMMARY: [&str; 29] = [
-    "scenario",
-    "engine",
-    "dimension",
-    "particles_initial",
-    "particles_final",
-    "volume_fraction",
-    "seed",
-    "threads",
-    "version",
-    "numerics",
-    "steps",
-    "steps_capped",
-    "events",
-    "collisions",
-    "collisions_per_particle",
-    "simulated_time",
-    "end_reason",
-    "interrupted",
-    "kinetic_energy_initial",
-    "kinetic_energy_final",
-    "temperature",
-    "momentum_drift",
-    "wall_seconds",
-    "advancing_seconds",
-    "particle_steps_per_second",
-    "events_per_second",
-    "peak_memory_bytes",
-    "state_hash",
-    "pressure",
-];
 
 /// A place to work in, and the program started there.
 struct Place(tempfile::TempDir);
@@ -100,6 +68,22 @@ fn summary(folder: &Path) -> Map<String, Value> {
     serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
 }
 
+/// Every key of the table stands in `summary` and is of its kind; every other one is a figure with an error or the error itself.
+fn agrees_with_its_table(summary: &Map<String, Value>) {
+    for (key, kind) in KEYS {
+        let value = summary.get(key).unwrap_or_else(|| panic!("{key}"));
+        match kind {
+            Kind::Text => assert!(value.is_string() || value.is_boolean(), "{key}: {value}"),
+            Kind::Number | Kind::Counter => assert!(value.is_number() || value.is_null(), "{key}: {value}"),
+            Kind::Cost => assert!(value.as_f64().is_none_or(|cost| cost >= 0.0), "{key}: {value}"),
+        }
+    }
+    for key in summary.keys().filter(|key| KEYS.iter().all(|(known, _)| known != key)) {
+        let name = key.trim_end_matches("_standard_error");
+        assert!(summary.contains_key(&format!("{name}_standard_error")), "{key} is in no table");
+    }
+}
+
 #[test]
 fn a_run_folder_is_complete() {
     let place = Place::new();
@@ -110,9 +94,8 @@ fn a_run_folder_is_complete() {
         assert!(fs::metadata(folder.join(file)).unwrap().len() > 100, "{file}");
     }
     let summary = summary(&folder);
-    for key in SUMMARY {
-        assert!(summary.contains_key(key), "{key}");
-    }
+    agrees_with_its_table(&summary);
+    assert!(summary["pressure"].is_f64());
     assert_eq!(
         (summary["end_reason"].as_str(), summary["events"].is_null()),
         (Some("collisions_per_particle"), true)

@@ -148,6 +148,7 @@ fn contestant(engine: &str, order: usize) -> Contestant {
             sides: [side(), side(), Default::default()],
         }),
         diameter: 1.0,
+        kinds: Default::default(),
         frames: [0.0, 10.0, 20.0, 40.0, 80.0].map(frame).to_vec(),
     }
 }

@@ -6,6 +6,8 @@ mod report_samples;
 
 use grainflow::record::contents::{Frame, RunLog};
 use grainflow::report::{grains_png, render};
+use grainflow::scenario::kinds::Kinds;
+use grainflow::simulation::figures::KEYS;
 use report_samples::{Sample, all, bed, cooling, heap, pipe, shear};
 use serde_json::Map;
 
@@ -87,7 +89,13 @@ fn each_scenario_shows_what_it_is_about() {
     };
     has(
         heap(),
-        &["Growth of the heap", "over √t", "logarithmic tail", "0.45 … 0.68", "Centre of mass height"],
+        &[
+            "Growth of the heap",
+            "over √t",
+            "logarithmic tail",
+            "Regression: 4 heaps of 3000 grains",
+            "Centre of mass height",
+        ],
     );
     has(cooling(), &["Haff’s law", "homogeneous cooling", "Impact parameter", "Cluster share", "eq. 4.44"]);
     has(
@@ -163,6 +171,7 @@ fn the_equation_of_state_knows_the_transfer() {
         page(&sample)
     };
     // 1 + 2r ν g and 1 + (1 + r) ν g at r = 0.8, ν = 0.2501.
+    assert!(expected("transfer = \"momentum-change\"\n").contains("1.634 ± 3 %"), "2r");
     assert!(expected("").contains("1.634 ± 3 %"), "2r");
     assert!(expected("transfer = \"corrected\"\n").contains("1.713 ± 3 %"), "1 + r");
 }
@@ -192,7 +201,74 @@ fn theory_is_shown_where_it_holds() {
 fn pictures_show_the_grains() {
     let sample = heap();
     let frame = sample.log.frames.last().unwrap();
-    let full = grains_png(frame, sample.log.walls.as_ref(), 1.0, 800);
-    let empty = grains_png(&Frame::default(), sample.log.walls.as_ref(), 1.0, 800);
+    let alike = Kinds::default();
+    let full = grains_png(frame, sample.log.walls.as_ref(), &alike, 800);
+    let empty = grains_png(&Frame::default(), sample.log.walls.as_ref(), &alike, 800);
     assert!(full.starts_with(b"\x89PNG") && full.len() > 4 * empty.len());
+}
+
+/// The page of [`cooling`] whose scenario has `text` in place of `part`.
+fn with(part: &str, text: &str) -> String {
+    let mut sample = cooling();
+    assert!(sample.log.scenario.contains(part), "{part}");
+    sample.log.scenario = sample.log.scenario.replace(part, text);
+    page(&sample)
+}
+
+#[test]
+fn theory_of_smooth_equal_grains_is_for_them_alone() {
+    let grains = "diameter = 1.0\nmass = 1.0\nrestitution = 0.8\nvolume_fraction = 0.25\n";
+    let law = |page: &str| page.contains("nothing is fitted") || page.contains("eq. 4.44");
+    assert!(law(&with(grains, grains)));
+    let kinds = "[[particles.species]]\ndiameter = 1.0\nmass = 1.0\nshare = 0.5\n\
+                 [[particles.species]]\ndiameter = 2.0\nmass = 4.0\nshare = 0.5\n";
+    let event_driven = |scenario: &str| {
+        let mut sample = cooling();
+        sample.log.scenario = scenario.replace("\"hsmc\"", "\"event-driven\"");
+        sample.summary.insert("engine".to_owned(), "event-driven".into());
+        page(&sample)
+    };
+    let text = cooling().log.scenario;
+    let mixture =
+        event_driven(&text.replace(grains, &format!("restitution = 0.8\nvolume_fraction = 0.25\n{kinds}")));
+    assert!(!law(&mixture) && mixture.contains("does not know grains of several kinds"));
+    assert!(mixture.contains("of 2 kinds of restitution 0.8") && mixture.contains("all are drawn alike"));
+    let rough = event_driven(&text.replace(grains, &format!("{grains}tangential_restitution = 0.3\n")));
+    assert!(!law(&rough) && rough.contains("does not know rough grains"));
+    let glancing = with("kind = \"hsmc\"\n", "kind = \"hsmc\"\nimpact_parameter = { c = 0.5 }\n");
+    assert!(!law(&glancing) && glancing.contains("engine.impact_parameter other than molecular chaos"));
+}
+
+#[test]
+fn a_scenario_of_another_version_is_said_to_be_unread() {
+    let newer = with("kind = \"hsmc\"\n", "kind = \"hsmc\"\nspooky_action = 1\n");
+    assert!(newer.contains("cannot be read by this version") && newer.contains("spooky_action"));
+    assert!(!newer.contains("nothing is fitted") && newer.contains("<canvas"));
+}
+
+#[test]
+fn a_straight_profile_is_expected_where_walls_alone_drive() {
+    let expected = "Linear profile between moving walls";
+    let mut sample = shear();
+    assert!(page(&sample).contains(expected));
+    sample.log.scenario =
+        sample.log.scenario.replacen("dimension = 2\n", "dimension = 2\ngravity = [0.1, 0.0]\n", 1);
+    let pulled = page(&sample);
+    assert!(!pulled.contains(expected) && !pulled.contains("linear law") && !pulled.contains("2.1 ± 25 %"));
+}
+
+#[test]
+fn what_every_run_has_is_no_figure_of_the_physics() {
+    let mut sample = cooling();
+    for (key, _) in KEYS {
+        sample.summary.entry(key).or_insert(7.5.into());
+    }
+    let page = page(&sample);
+    let own = &cards(&page)[..cards(&page).find("class=\"figures facts\"").unwrap()];
+    for (key, _) in KEYS {
+        assert!(!own.contains(&format!("<dt>{}</dt>", key.replace('_', " "))), "{key}");
+    }
+    assert!(
+        cards(&page).contains("<dt>resumed at</dt>") && page.contains("<td>cured share</td><td>7.5</td>")
+    );
 }

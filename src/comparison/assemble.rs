@@ -7,6 +7,8 @@ use super::model::{Basis, Compared, Comparison, Contestant, Correlation, Cost};
 use super::words::{in_words, rounded};
 use super::{figures, profiles, series};
 use crate::record::contents::RunLog;
+use crate::scenario::kinds::Kinds;
+use crate::scenario::{Overrides, parse};
 use crate::statistics::mean;
 
 /// What is the same for all runs.
@@ -136,7 +138,12 @@ fn memories(comparison: &Comparison, entries: &[Entry]) -> Vec<String> {
 fn contestant(entry: Entry) -> Contestant {
     let cost = if entry.was_alone { cost(&entry.runs) } else { None };
     let folders = entry.runs.iter().map(|run| run.folder.clone()).collect();
-    let first = entry.runs.into_iter().next().map(|run| run.log).unwrap_or_default();
+    let mut first = entry.runs.into_iter().next().map(|run| run.log).unwrap_or_default();
+    let species = std::mem::take(&mut first.species);
+    let kinds = match parse("log", &first.scenario, &Overrides::default()) {
+        Ok(scenario) => Kinds::of(&scenario, species),
+        Err(_) => Kinds::of_diameter(entry.diameter),
+    };
     Contestant {
         label: entry.label,
         engine: entry.engine,
@@ -145,6 +152,7 @@ fn contestant(entry: Entry) -> Contestant {
         cost,
         walls: first.walls,
         diameter: entry.diameter,
+        kinds,
         frames: first.frames,
     }
 }

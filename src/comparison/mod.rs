@@ -11,6 +11,7 @@ mod figures;
 mod interpolate;
 pub mod json;
 mod judge;
+pub(crate) mod laws;
 mod memory;
 pub mod model;
 mod profiles;

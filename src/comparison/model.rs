@@ -2,6 +2,7 @@
 
 use crate::observe::measure::{Column, Dimension};
 use crate::record::contents::{Frame, Walls};
+use crate::scenario::kinds::Kinds;
 use crate::statistics::Estimate;
 
 /// Several engines side by side, each with the same initial states.
@@ -54,8 +55,10 @@ pub struct Contestant {
     pub cost: Option<Cost>,
     /// The box and its walls.
     pub walls: Option<Walls>,
-    /// Diameter of a grain [length].
+    /// Diameter of a grain, of the first species where there are several [length].
     pub diameter: f64,
+    /// Sizes of the grains, for pictures.
+    pub kinds: Kinds,
     /// Pictures of its first replica.
     pub frames: Vec<Frame>,
 }

@@ -1,16 +1,12 @@
 //! What theory says beside what was compared: which law of `law` belongs to which curve and figure of a scenario.
 
-use super::model::{Compared, ComparedFigure, Comparison, Contestant, TheoryCurve};
+use super::laws::{Contacts, Laws};
+use super::model::{Compared, ComparedFigure, Comparison, TheoryCurve};
 use super::stability::remarks;
 use super::words::rounded;
 use crate::law::homogeneous_cooling::HomogeneousCooling;
-use crate::law::kinetic_theory::{
-    bagnold_coefficient, chaotic_impact_density, collision_frequency, compressibility_factor,
-    maxwell_density, mean_free_path,
-};
-use crate::law::restitution::{Constant, RestitutionLaw};
-use crate::observe::layout;
-use crate::scenario::model::{AnyScenario, InitialVelocities, Scenario, Transfer};
+use crate::law::kinetic_theory::{chaotic_impact_density, maxwell_density};
+use crate::scenario::model::{AnyScenario, InitialVelocities, Scenario};
 use crate::scenario::{Overrides, parse};
 use crate::space::Vector;
 
@@ -31,43 +27,57 @@ pub fn add(comparison: &mut Comparison) {
 /// What is known of a scenario.
 struct Theory<'a, V> {
     scenario: &'a Scenario<V>,
-    /// ν.
-    volume_fraction: f64,
-    /// r of a homogeneous gas: periodic, without force and source, of smooth grains of one kind and constant
-    /// restitution.
-    restitution: Option<f64>,
+    /// What holds for it.
+    laws: Laws<'a, V>,
     /// T₀ [energy].
     temperature: Option<f64>,
-    /// Whether every engine is plain DSMC: a gas of points.
-    of_points: bool,
-    /// What to say of engines that follow another law.
+    /// What to say of rates where plain DSMC follows another law.
     exception: String,
+    /// What to say of pressures where engines follow another law than the one that is shown.
+    other_pressures: String,
 }
 
 impl<'a, V: Vector> Theory<'a, V> {
     fn of(scenario: &'a Scenario<V>, comparison: &Comparison) -> Self {
-        let volume_fraction = scenario.volume_fraction();
-        let enskog = V::contact_correlation(volume_fraction);
-        let is_boltzmann = |contestant: &Contestant| contestant.engine == "dsmc";
-        let all = comparison.contestants.iter().all(is_boltzmann);
-        let some = comparison.contestants.iter().any(is_boltzmann);
-        let exception = match (all, some) {
-            (false, true) => {
-                let factor = rounded(enskog);
+        let engines: Vec<&str> = comparison.contestants.iter().map(|one| one.engine.as_str()).collect();
+        let laws = Laws::with(scenario, &engines);
+        let has = |contacts: Contacts| {
+            engines.iter().any(|engine| Contacts::of(engine, scenario.engine.transfer) == contacts)
+        };
+        let (of_points, displaced) = (has(Contacts::OfPoints), has(Contacts::Displaced));
+        let mut exception = match laws.contacts() {
+            Contacts::OfPoints => "; g = 1, a gas of points".to_owned(),
+            _ if of_points => {
+                let factor = rounded(V::contact_correlation(scenario.volume_fraction()));
                 format!(
                     "; dsmc, of points, has g = 1: {factor} times fewer collisions per time at one temperature"
                 )
             }
-            (true, true) => "; g = 1, a gas of points".to_owned(),
             _ => String::new(),
         };
+        let unlike = if laws.are_some_glancing() {
+            "; engines that follow engine.impact_parameter differ"
+        } else {
+            ""
+        };
+        exception += unlike;
+        let mut other_pressures = unlike.to_owned();
+        if laws.contacts() == Contacts::OfGrains {
+            let is_inelastic = laws.homogeneous_restitution().is_some_and(|r| r < 1.0);
+            if displaced && is_inelastic {
+                other_pressures +=
+                    "; cba and hsmc carry 2r in place of 1 + r unless transfer = \"corrected\"";
+            }
+            if of_points {
+                other_pressures += "; dsmc, of points, has 1";
+            }
+        }
         Theory {
             scenario,
-            volume_fraction,
-            restitution: homogeneous_restitution(scenario),
+            laws,
             temperature: initial_temperature(scenario, comparison).filter(|temperature| *temperature > 0.0),
-            of_points: all && some,
             exception,
+            other_pressures,
         }
     }
 
@@ -81,22 +91,19 @@ impl<'a, V: Vector> Theory<'a, V> {
         for figure in &mut comparison.figures {
             figure.theory = self.of_figure(figure);
         }
-        if let Some(restitution) = self.restitution.filter(|r| *r < 1.0 && self.volume_fraction > 0.0) {
+        if let Some(restitution) = self.laws.homogeneous_restitution().filter(|r| *r < 1.0) {
             comparison.remarks.extend(remarks(self.scenario, restitution));
         }
-    }
-
-    /// g(ν); 1 of points.
-    fn correlation(&self) -> f64 {
-        if self.of_points { 1.0 } else { V::contact_correlation(self.volume_fraction) }
+        if let Some(obstacle) = self.laws.obstacle() {
+            comparison
+                .remarks
+                .push(format!("Theory of a homogeneous gas is not shown: it does not know {obstacle}."));
+        }
     }
 
     /// The law of a gas that cools.
     fn cooling(&self) -> Option<HomogeneousCooling> {
-        let restitution = self.restitution.filter(|r| *r < 1.0)?;
-        let (grain, nu) = (self.scenario.grain, self.volume_fraction);
-        let temperature = self.temperature.filter(|_| nu > 0.0)?;
-        Some(HomogeneousCooling::of::<V>(grain, nu, temperature, restitution, self.correlation()))
+        self.laws.cooling(self.temperature?)
     }
 
     fn of_series(&self, compared: &Compared) -> Option<TheoryCurve> {
@@ -114,8 +121,7 @@ impl<'a, V: Vector> Theory<'a, V> {
             "collisions_per_particle" => false,
             _ => return None,
         };
-        if column == "collision_frequency" && self.restitution == Some(1.0) {
-            let frequency = self.elastic_frequency()?;
+        if let Some(frequency) = self.elastic_frequency().filter(|_| column == "collision_frequency") {
             return curve("Enskog", self.frequency_source(), &|_| frequency);
         }
         let law = self.cooling()?;
@@ -165,29 +171,17 @@ impl<'a, V: Vector> Theory<'a, V> {
 
     /// Collisions per grain and time of a gas that does not cool.
     fn elastic_frequency(&self) -> Option<f64> {
-        self.restitution.filter(|r| *r >= 1.0)?;
-        let (grain, nu) = (self.scenario.grain, self.volume_fraction);
-        Some(collision_frequency::<V>(grain, nu, self.temperature?, self.correlation()))
+        self.laws.elastic_frequency(self.temperature?)
     }
 
     /// PV/NT of hard grains.
     fn equation_of_state(&self) -> Option<(f64, String)> {
-        let restitution = self.restitution.filter(|_| self.volume_fraction < V::FREEZING)?;
-        if self.of_points {
-            return Some((1.0, "ideal gas: plain dsmc carries no momentum through collisions".to_owned()));
-        }
-        let mut source = "1 + (1 + r) 2^(D−2) ν g(ν) of a homogeneous fluid (Miller 2004, 4.44)".to_owned();
-        if restitution < 1.0 && self.scenario.engine.transfer == Transfer::MomentumChange {
-            source += "; cba and hsmc carry 2r in place of 1 + r unless transfer = \"corrected\"";
-        }
-        if !self.exception.is_empty() {
-            source += "; dsmc, of points, has 1";
-        }
-        Some((compressibility_factor::<V>(self.volume_fraction, restitution), source))
+        let (value, source) = self.laws.equation_of_state()?;
+        Some((value, format!("{source}{}", self.other_pressures)))
     }
 
     fn of_profile(&self, compared: &Compared) -> Option<TheoryCurve> {
-        let shear = layout::shear(&self.scenario.setting()).filter(|_| self.scenario.gravity == V::ZERO);
+        let shear = self.laws.shear();
         let height = |axis: usize| self.scenario.size[axis];
         let (name, source, value): (&str, &str, Box<dyn Fn(f64) -> f64>) =
             match (compared.name.as_str(), compared.ordinate.name.as_str()) {
@@ -219,20 +213,14 @@ impl<'a, V: Vector> Theory<'a, V> {
             "collision_frequency" => frequency(&|frequency| frequency),
             "mean_free_time" => frequency(&|frequency| 1.0 / frequency),
             "mean_free_path" => {
-                self.restitution.filter(|_| self.volume_fraction > 0.0)?;
-                let path = mean_free_path::<V>(self.scenario.grain, self.volume_fraction);
-                let g = V::contact_correlation(self.volume_fraction) / self.correlation();
-                Some((
-                    path * g,
-                    format!("mean speed over collision frequency of a Maxwell gas{}", self.exception),
-                ))
+                let source =
+                    format!("mean speed over collision frequency of a Maxwell gas{}", self.exception);
+                Some((self.laws.mean_free_path()?, source))
             }
             "impact_c" => Some((0.0, "molecular chaos".to_owned())),
             "velocity_profile_slope" => {
                 let linear = "a straight line from wall to wall (Müller 2001, 3.3)";
-                layout::shear(&self.scenario.setting())
-                    .filter(|_| self.scenario.gravity == V::ZERO)
-                    .map(|_| (1.0, linear.to_owned()))
+                self.laws.shear().map(|_| (1.0, linear.to_owned()))
             }
             "wall_shear_stress" => self.bagnold_stress(),
             _ => None,
@@ -241,34 +229,16 @@ impl<'a, V: Vector> Theory<'a, V> {
 
     /// Bagnold's law between walls that move past each other, without slip.
     fn bagnold_stress(&self) -> Option<(f64, String)> {
-        let (scenario, nu) = (self.scenario, self.volume_fraction);
-        let shear = layout::shear(&scenario.setting())?;
-        let restitution = smooth_constant_restitution(scenario).filter(|r| *r < 1.0)?;
-        let is_free = scenario.gravity == V::ZERO && scenario.source.is_none();
-        if !is_free || nu <= 0.0 || nu >= V::FREEZING {
-            return None;
-        }
+        let (scenario, shear) = (self.scenario, self.laws.shear()?);
+        let coefficient = self.laws.bagnold_coefficient()?;
         let rate = shear.speed / scenario.size[shear.axis];
         let unit = scenario.grain.mass * rate * rate * scenario.grain.diameter.powi(2 - V::DIMENSION as i32);
-        let coefficient = bagnold_coefficient::<V>(nu, restitution);
         let source = format!(
             "Bagnold’s law, {} m (v/H)² d^(2−D), of Navier–Stokes–Enskog theory: uniform shear without slip",
             rounded(coefficient)
         );
         Some((coefficient * unit, source))
     }
-}
-
-/// r of smooth grains of one kind and constant restitution.
-fn smooth_constant_restitution<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    let RestitutionLaw::Constant(Constant(restitution)) = scenario.restitution else { return None };
-    (scenario.roughness.is_none() && scenario.species.is_empty()).then_some(restitution)
-}
-
-fn homogeneous_restitution<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
-    let is_free = scenario.gravity == V::ZERO && scenario.source.is_none();
-    let is_endless = scenario.boundary.is_fully_periodic();
-    smooth_constant_restitution(scenario).filter(|_| is_free && is_endless)
 }
 
 /// As the reference has it at the start, else as the scenario asks for.

@@ -31,9 +31,9 @@ pub use volume::Volume;
 use crate::record::error::LogError;
 use crate::record::overview::{Overview, overview};
 use crate::record::walk::{each_frame, each_state};
-use crate::replay::kinds::Kinds;
 use crate::replay::scenario_of;
 use crate::replay::selection::{Picker, Selection};
+use crate::scenario::kinds::Kinds;
 use crate::scenario::model::{AnyScenario, Scenario};
 use crate::space::Vector;
 

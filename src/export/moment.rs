@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::record::contents::Frame;
 use crate::record::state::SavedState;
-use crate::replay::kinds::Kinds;
+use crate::scenario::kinds::Kinds;
 use crate::space::Vector;
 
 /// The grains at one time, in rising identity.

@@ -28,6 +28,9 @@ pub struct RunLog {
     pub fields: Vec<Field>,
     /// The box and its walls.
     pub walls: Option<Walls>,
+    /// The species of every grain `[id]` that a state holds, 0 where none does; empty where all grains are alike, and where
+    /// frames were not read.
+    pub species: Vec<u8>,
     /// What is missing, as a sentence, where the file was cut off; nothing for a whole log.
     pub cut_off: Option<String>,
 }

@@ -7,6 +7,7 @@ use prost::Message;
 
 use super::contents::Walls;
 use super::error::LogError;
+use super::reader::add_species;
 use super::scan::{Event, Fault, scan};
 use super::schema::foxglove::{PointCloud, SceneUpdate};
 use super::schema::grainflow::{Profile, State};
@@ -123,17 +124,11 @@ impl Overview {
 
     /// A state counts with its last part.
     fn state(&mut self, part: &State) {
-        let rows = part.ids.len() / 4;
         if part.first_row == 0 {
             self.states.push((part.time.unwrap_or(f64::NAN), part.grains));
         }
-        let Some(species) = &part.species else { return };
-        for (id, &kind) in part.ids.chunks_exact(4).zip(species).take(rows) {
-            let id = u32::from_le_bytes([id[0], id[1], id[2], id[3]]) as usize;
-            if id >= self.species.len() {
-                self.species.resize(id + 1, 0);
-            }
-            self.species[id] = kind;
+        if let Some(species) = &part.species {
+            add_species(&mut self.species, &part.ids, species);
         }
     }
 }

@@ -91,6 +91,26 @@ pub(crate) fn last_state_and_place<V: Vector>(path: &Path) -> Result<Option<Plac
     Ok(last)
 }
 
+/// Who is of which kind: the two fields of [`State`] that say it. Decoding passes over all others, which are nearly all of it.
+#[derive(Clone, PartialEq, Message)]
+struct Kinds {
+    #[prost(bytes = "vec", tag = "8")]
+    ids: Vec<u8>,
+    #[prost(bytes = "vec", tag = "10")]
+    species: Vec<u8>,
+}
+
+/// Puts the `kinds` of the grains `ids`, four bytes each, into `species` `[id]`.
+pub(super) fn add_species(species: &mut Vec<u8>, ids: &[u8], kinds: &[u8]) {
+    for (id, &kind) in ids.chunks_exact(4).zip(kinds) {
+        let id = u32::from_le_bytes([id[0], id[1], id[2], id[3]]) as usize;
+        if id >= species.len() {
+            species.resize(id + 1, 0);
+        }
+        species[id] = kind;
+    }
+}
+
 /// A state and the number of its first part in the sequence of the states.
 pub(crate) type Placed<V> = (SavedState<'static, V>, u32);
 
@@ -127,6 +147,7 @@ impl Contents {
                 topic::PARTICLES => self.frame(sequence, data)?,
                 _ if topic.starts_with(topic::FIELDS) => self.field(topic, sequence, data)?,
                 topic::PROFILES => self.log.profiles.push(profile(data)?),
+                topic::STATE if !self.without_frames => self.species(data)?,
                 topic::WALLS => {
                     self.log.walls = walls_of(&SceneUpdate::decode(data).map_err(Fault::damage)?);
                 }
@@ -157,6 +178,13 @@ impl Contents {
         frame.time = self.log.series[recording][0];
         frame.grains = self.recordings[recording].1;
         self.log.frames.push(frame);
+        Ok(())
+    }
+
+    /// Who is of which kind, as the states say it.
+    fn species(&mut self, data: &[u8]) -> Result<(), Fault> {
+        let part = Kinds::decode(data).map_err(Fault::damage)?;
+        add_species(&mut self.log.species, &part.ids, &part.species);
         Ok(())
     }
 

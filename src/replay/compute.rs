@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use super::kinds::Kinds;
 use super::selection::Selection;
 use super::tables::Tables;
 use super::{ScenarioUnknown, scenario_of};
@@ -17,6 +16,7 @@ use crate::record::contents::Frame;
 use crate::record::error::LogError;
 use crate::record::overview::{Overview, overview};
 use crate::record::walk::{each_frame, each_state};
+use crate::scenario::kinds::Kinds;
 use crate::scenario::model::{AnyScenario, Scenario};
 use crate::space::Vector;
 

@@ -10,6 +10,7 @@ use crate::record::contents::Walls;
 use crate::record::error::LogError;
 use crate::record::walk::each_frame;
 use crate::report::Camera;
+use crate::scenario::kinds::Kinds;
 
 /// Writes a PNG file `frame-<number>.png` of `width` pixels for every frame of the log at `path` that `selection` picks
 /// into `folder`; returns how many, or why the disk did not take one. Goes through the log twice: all pictures show the same window.
@@ -20,7 +21,7 @@ pub fn write_pictures(
     view: &View,
     stop: &AtomicBool,
 ) -> Result<io::Result<u64>, LogError> {
-    let mut camera = Camera::new(view.walls.clone(), view.diameter);
+    let mut camera = Camera::new(view.walls.clone(), view.kinds.clone());
     let mut picker = selection.picker();
     each_frame(path, &mut |_, frame| {
         if picker.takes(frame.time) {
@@ -54,8 +55,8 @@ pub fn write_pictures(
 pub struct View {
     /// The box.
     pub walls: Option<Walls>,
-    /// Diameter of a grain [length].
-    pub diameter: f64,
+    /// Sizes of the grains.
+    pub kinds: Kinds,
     /// Width of a picture [pixel].
     pub width: u32,
 }

@@ -2,7 +2,6 @@
 
 pub mod compute;
 pub mod film;
-pub mod kinds;
 pub mod selection;
 pub mod tables;
 pub mod text_picture;

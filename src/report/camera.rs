@@ -3,19 +3,20 @@
 use super::picture::picture;
 use super::scene::Scene;
 use crate::record::contents::{Frame, Walls};
+use crate::scenario::kinds::Kinds;
 
 /// First shown every frame, then asked for their pictures: all have the same window and the same colours.
 #[derive(Clone, Debug)]
 pub struct Camera {
     walls: Option<Walls>,
-    diameter: f64,
+    kinds: Kinds,
     scene: Option<Scene>,
 }
 
 impl Camera {
-    /// A camera before the box `walls` with grains of `diameter` [length].
-    pub fn new(walls: Option<Walls>, diameter: f64) -> Self {
-        Camera { walls, diameter, scene: None }
+    /// A camera before the box `walls` with grains of these `kinds`.
+    pub fn new(walls: Option<Walls>, kinds: Kinds) -> Self {
+        Camera { walls, kinds, scene: None }
     }
 
     /// Makes sure that `frame` fits in; one without grains fits anyway.
@@ -23,7 +24,7 @@ impl Camera {
         if frame.positions.is_empty() {
             return;
         }
-        let more = Scene::of(&[frame], self.walls.as_ref(), self.diameter, false);
+        let more = Scene::of(&[frame], self.walls.as_ref(), self.kinds.largest_diameter(), false);
         match &mut self.scene {
             Some(scene) => scene.include(&more),
             None => self.scene = Some(more),
@@ -32,9 +33,9 @@ impl Camera {
 
     /// A picture of `frame`, `width` pixels wide, as a PNG file.
     pub fn png(&self, frame: &Frame, width: u32) -> Vec<u8> {
-        let alone = || Scene::of(&[frame], self.walls.as_ref(), self.diameter, false);
+        let alone = || Scene::of(&[frame], self.walls.as_ref(), self.kinds.largest_diameter(), false);
         let scene = self.scene.clone().unwrap_or_else(alone);
-        picture(frame, &scene, scene.speeds[0], self.diameter, f64::from(width)).png()
+        picture(frame, &scene, scene.speeds[0], &self.kinds, f64::from(width)).png()
     }
 }
 
@@ -49,7 +50,7 @@ mod tests {
             velocities: vec![[1.0, 0.0, 0.0]; 2],
             ..Frame::default()
         };
-        let mut camera = Camera::new(None, 1.0);
+        let mut camera = Camera::new(None, Kinds::default());
         let frames = [Frame::default(), frame(2.0), frame(6.0)];
         frames.iter().for_each(|frame| camera.see(frame));
         let size = |frame: &Frame| {

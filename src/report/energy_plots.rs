@@ -1,36 +1,21 @@
 //! How the energy goes: temperature against time and against collisions, beside Haff's law where it applies.
 
-use glam::{DVec2, DVec3};
-
 use super::axis::Scale;
 use super::evidence::Evidence;
 use super::number::number;
 use super::plot::{Curve, Ink, Plot, Stroke};
+use crate::comparison::laws;
 use crate::law::homogeneous_cooling::HomogeneousCooling;
-use crate::matter::grain::Grain;
-use crate::space::Vector;
 
 /// Haff's law for a run, with the first Sonine correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Haff(HomogeneousCooling);
 
 impl Haff {
-    /// The law of a homogeneous gas that cools: periodic, without force, of constant restitution below 1.
+    /// The law of a gas that cools, where [`laws::cooling`] knows one of it.
     pub(super) fn of(evidence: &Evidence<'_>) -> Option<Self> {
-        let setup = evidence.setup;
-        let restitution = setup.restitution.filter(|r| (0.0..1.0).contains(r))?;
-        let nu = setup.volume_fraction.filter(|nu| *nu > 0.0)?;
-        if !setup.is_periodic || setup.has_gravity() || setup.source.is_some() {
-            return None;
-        }
-        let temperature = initial_temperature(evidence).filter(|t| *t > 0.0)?;
-        let grain = Grain { diameter: setup.diameter, mass: setup.mass };
-        let law = match setup.dimension {
-            3 => law::<DVec3>,
-            _ => law::<DVec2>,
-        };
-        // Plain DSMC collides at the rate of a Boltzmann gas.
-        Some(Self(law(grain, nu, temperature, restitution, setup.engine == "dsmc")))
+        let known = evidence.setup.known.as_ref()?;
+        laws::cooling(&known.scenario, initial_temperature(evidence)?).map(Self)
     }
 
     /// t₀ [time].
@@ -49,17 +34,6 @@ impl Haff {
         }
         (count >= 3 && products > 0.0).then(|| squares / products)
     }
-}
-
-fn law<V: Vector>(
-    grain: Grain,
-    nu: f64,
-    temperature: f64,
-    restitution: f64,
-    is_boltzmann: bool,
-) -> HomogeneousCooling {
-    let correlation = if is_boltzmann { 1.0 } else { V::contact_correlation(nu) };
-    HomogeneousCooling::of::<V>(grain, nu, temperature, restitution, correlation)
 }
 
 /// From the first recording, else from the energy of the summary.
@@ -128,7 +102,7 @@ fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, labe
         y_scale: Scale::of_energy(&points),
         ..Plot::default()
     };
-    if let Some([count, rate]) = evidence.setup.source {
+    if let Some([count, rate]) = evidence.setup.source() {
         plot.caption = format!("The last grain is poured at about t = {}.", number(count / rate, 3));
     }
     if let Some(haff) = haff {

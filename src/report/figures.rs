@@ -5,59 +5,8 @@ use super::evidence::Evidence;
 use super::number::number;
 use super::setup::Setup;
 use crate::comparison::unit_of as unit_of_figure;
+use crate::simulation::figures as keys;
 use crate::statistics::block_average;
-
-/// Keys of the summary that every run has; all others are figures of its scenario.
-const COMMON: [&str; 28] = [
-    "scenario",
-    "engine",
-    "dimension",
-    "particles_initial",
-    "particles_final",
-    "volume_fraction",
-    "seed",
-    "threads",
-    "version",
-    "numerics",
-    "steps",
-    "steps_capped",
-    "events",
-    "collisions",
-    "collisions_per_particle",
-    "simulated_time",
-    "end_reason",
-    "interrupted",
-    "kinetic_energy_initial",
-    "kinetic_energy_final",
-    "temperature",
-    "momentum_drift",
-    "wall_seconds",
-    "advancing_seconds",
-    "particle_steps_per_second",
-    "events_per_second",
-    "peak_memory_bytes",
-    "state_hash",
-];
-
-/// What an engine counts while it works.
-pub(super) const COUNTERS: [&str; 16] = [
-    "steps",
-    "steps_capped",
-    "events",
-    "wall_hits",
-    "cell_crossings",
-    "list_renewals",
-    "annulled_events",
-    "invalid_states",
-    "collisions",
-    "candidates",
-    "cell_collisions",
-    "rejected_moves",
-    "cell_capacity",
-    "largest_occupancy",
-    "poured",
-    "removed",
-];
 
 /// Figures that are told beside another one.
 const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
@@ -97,7 +46,7 @@ pub(super) fn of_the_physics<'a>(evidence: &Evidence<'a>) -> Vec<&'a str> {
     let rank = |name: &str| KNOWN.iter().position(|known| known.0 == name).unwrap_or(KNOWN.len());
     let names = evidence.summary.keys().map(String::as_str);
     let mut names: Vec<&str> = names
-        .filter(|name| ![&COMMON[..], &COUNTERS, &DETAILS].concat().contains(name))
+        .filter(|name| !keys::is_of_every_run(name) && !DETAILS.contains(name))
         .filter(|name| !name.ends_with("_standard_error"))
         .filter(|name| evidence.figure(name).is_some() && has_meaning(evidence, name))
         .collect();
@@ -107,7 +56,7 @@ pub(super) fn of_the_physics<'a>(evidence: &Evidence<'a>) -> Vec<&'a str> {
 
 /// Counters that apply to this run, with their values.
 pub(super) fn counters(evidence: &Evidence<'_>) -> Vec<(&'static str, f64)> {
-    let counted = COUNTERS.into_iter().filter_map(|name| Some((name, evidence.figure(name)?)));
+    let counted = keys::counters().filter_map(|name| Some((name, evidence.figure(name)?)));
     // Nothing leaves a closed box.
     counted
         .filter(|(name, value)| *name != "removed" || *value > 0.0 || evidence.setup.has_open_side)

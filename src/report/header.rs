@@ -9,7 +9,8 @@ use super::evidence::Evidence;
 use super::figures;
 use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
-use super::reference::{Comparison, comparisons};
+use super::reference::{Reference, references};
+use super::setup::Setup;
 use crate::observe::measure::Dimension;
 
 /// Title, sentence, figures.
@@ -25,7 +26,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
     if evidence.summary.get("interrupted") == Some(&Value::Bool(true)) {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
-    let references = comparisons(evidence);
+    let references = references(evidence);
     let mut cards: String = references
         .iter()
         .filter(|row| row.figure.starts_with("cooling_time"))
@@ -52,21 +53,19 @@ fn sentence(evidence: &Evidence<'_>) -> String {
         Some(grains) => format!("{} {shape}", count(grains)),
         None => capital(shape),
     };
-    if let Some(restitution) = setup.restitution {
-        let _ = write!(text, " of restitution {}", number(restitution, 6));
-    }
+    text.push_str(&grains_are(setup));
     // A volume fraction of a box that is filled by pouring says nothing.
-    if let Some(nu) = setup.volume_fraction.filter(|nu| *nu > 0.0 && setup.source.is_none()) {
+    if let Some(nu) = setup.volume_fraction.filter(|nu| *nu > 0.0 && setup.source().is_none()) {
         let _ = write!(text, " at volume fraction {}", number(nu, 3));
     }
     if !setup.size.is_empty() {
         let sides: Vec<String> = setup.size.iter().map(|s| number(*s, 4)).collect();
-        let into = if setup.source.is_some() { "poured into" } else { "in" };
+        let into = if setup.source().is_some() { "poured into" } else { "in" };
         let _ = write!(text, " {into} a box of {} {}", sides.join(" × "), setup.named(0));
     }
-    text.push_str(match (setup.wall_velocities.is_some(), setup.has_gravity()) {
+    text.push_str(match (setup.shear().is_some(), setup.has_gravity()) {
         (true, _) => ", sheared by its walls",
-        (false, true) if setup.source.is_none() => ", under gravity",
+        (false, true) if setup.source().is_none() => ", under gravity",
         _ => "",
     });
     let _ = write!(text, ", simulated with {}", engine_name(&setup.engine));
@@ -80,16 +79,32 @@ fn sentence(evidence: &Evidence<'_>) -> String {
     text
 }
 
+/// What kind of grains they are, as far as the scenario can be read.
+fn grains_are(setup: &Setup) -> String {
+    let mut text = String::new();
+    let Some(known) = &setup.known else { return text };
+    if known.species > 1 {
+        let _ = write!(text, " of {} kinds", known.species);
+    }
+    if known.is_rough {
+        text.push_str(", rough,");
+    }
+    if let Some(restitution) = known.restitution {
+        let _ = write!(text, " of restitution {}", number(restitution, 6));
+    }
+    text
+}
+
 fn engine_name(engine: &str) -> String {
     match engine {
-        "dsmc" | "cba" | "cuba" | "esmc" | "hsmc" => engine.to_uppercase(),
+        "dsmc" | "cba" | "hsmc" => engine.to_uppercase(),
         "event-driven" => "event-driven dynamics".to_owned(),
         other => other.to_owned(),
     }
 }
 
 /// A figure of the physics, with what is known about it below.
-fn card(evidence: &Evidence<'_>, name: &str, references: &[Comparison]) -> String {
+fn card(evidence: &Evidence<'_>, name: &str, references: &[Reference]) -> String {
     let Some(value) = evidence.figure(name) else {
         return String::new();
     };
@@ -104,7 +119,7 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Comparison]) -> Strin
 }
 
 /// t₀ is no figure of the summary: it is fitted here.
-fn cooling_card(evidence: &Evidence<'_>, row: &Comparison) -> String {
+fn cooling_card(evidence: &Evidence<'_>, row: &Reference) -> String {
     let unit = evidence.setup.unit(Dimension { time: 1, ..Dimension::default() });
     entry(
         "cooling time t₀",
@@ -133,6 +148,7 @@ fn facts(evidence: &Evidence<'_>) -> String {
     let facts = [
         ("particles_final", "grains at the end", String::new()),
         ("simulated_time", "simulated time", evidence.setup.named(2)),
+        ("resumed_at", "resumed at", evidence.setup.named(2)),
         ("collisions_per_particle", "collisions per particle", String::new()),
         ("temperature", "granular temperature at the end", energy),
         ("wall_seconds", "computing time", "s".to_owned()),

@@ -67,7 +67,7 @@ fn staged(shown: &[&Profile], points: impl Fn(&Profile) -> Vec<[f64; 2]>) -> Vec
 /// The same with both axes over √t: a heap that keeps its shape falls on one curve.
 fn collapse(evidence: &Evidence<'_>, grown: &[&Profile], apex: f64) -> Option<Plot> {
     // After the last grain the heap does not grow, and √t means nothing.
-    let end = evidence.setup.source.map_or(f64::INFINITY, |[count, rate]| count / rate * 1.001);
+    let end = evidence.setup.source().map_or(f64::INFINITY, |[count, rate]| count / rate * 1.001);
     let pouring: Vec<&Profile> = grown.iter().copied().filter(|s| s.time > 0.0 && s.time <= end).collect();
     if pouring.len() < 3 {
         return None;

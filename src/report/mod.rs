@@ -18,6 +18,7 @@ mod other_plots;
 mod page;
 mod parameters;
 mod picture;
+mod plain_text;
 mod player;
 mod plot;
 mod raster;

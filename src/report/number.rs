@@ -92,7 +92,9 @@ pub(super) fn count(value: f64) -> String {
 /// A value with its standard error: two digits of the error and the value to the same place, but not more than
 /// four digits of the value unless the error is smaller still.
 pub(super) fn with_error(value: f64, standard_error: Option<f64>) -> String {
-    let Some(error) = standard_error.filter(|e| e.is_finite() && *e > 0.0) else {
+    // Values that are all the same scatter by rounding alone.
+    let is_real = |error: &f64| error.is_finite() && *error > 1e-13 * value.abs();
+    let Some(error) = standard_error.filter(is_real) else {
         return number(value, 4);
     };
     let exponent = value.abs().max(error).log10().floor() as i32;
@@ -152,6 +154,7 @@ mod tests {
         assert_eq!(with_error(0.0017123, Some(0.000052)), "0.001712 ± 0.000052");
         assert_eq!(with_error(1.23456e-7, Some(2.0e-9)), "(1.235 ± 0.020) × 10⁻⁷");
         assert_eq!(with_error(2.0, None), "2");
+        assert_eq!(with_error(0.120_228_252_187_381, Some(4.0e-18)), "0.1202");
         assert_eq!(with_error(16149.08, Some(1173.3)), "16\u{202f}100 ± 1200");
         assert_eq!(with_error(1.68354, Some(0.00284)), "1.684 ± 0.003");
         assert_eq!(with_error(1.68354, Some(0.00028)), "1.6835 ± 0.0003");

@@ -15,6 +15,7 @@ use super::{
     energy_plots, figures, header, heap_plots, other_plots, parameters, player, reference, shear_plots,
     wave_plots,
 };
+use crate::comparison::laws;
 use crate::observe::measure::Dimension;
 use crate::record::contents::{Frame, RunLog};
 
@@ -23,7 +24,7 @@ pub(super) fn page(log: &RunLog, summary: &Map<String, Value>) -> String {
     let setup = Setup::of(log, summary);
     let evidence = Evidence { log, summary, setup: &setup };
     let frames = player::chosen(&log.frames);
-    let scene = Scene::of(&frames, log.walls.as_ref(), setup.diameter, !setup.has_gravity());
+    let scene = Scene::of(&frames, log.walls.as_ref(), setup.kinds.largest_diameter(), !setup.has_gravity());
     let mut body = header::html(&evidence);
     body.push_str(&section("The run in motion", &grains(&frames, &scene, &setup)));
     let references = references(&evidence);
@@ -96,6 +97,11 @@ fn grains(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
             "<p class=\"note\">Pictures look along the second axis; farther grains are paler.</p>\n",
         );
     }
+    if setup.kinds.are_untold() {
+        html.push_str(
+            "<p class=\"note\">Grains differ in size, but no saved state says which is which: all are drawn alike.</p>\n",
+        );
+    }
     if figures::is_floor_untouched(setup) {
         html.push_str(
             "<p class=\"note\">HSMC keeps cells from overfilling, not grains from overlapping: inside a cell they may \
@@ -127,7 +133,7 @@ fn way_of_gravity(scene: &Scene, setup: &Setup) -> Option<String> {
 }
 
 fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, width: f64) -> String {
-    let raster = picture::picture(frame, scene, fastest, setup.diameter, width);
+    let raster = picture::picture(frame, scene, fastest, &setup.kinds, width);
     let time = if setup.units[2] == "time" { "" } else { &setup.units[2] };
     let moment = format!("t = {} {time}", number(frame.time, 4));
     let moment = moment.trim_end();
@@ -149,9 +155,10 @@ fn picture_figure(frame: &Frame, scene: &Scene, fastest: f64, setup: &Setup, wid
 
 /// The table of references, with what it does not hold.
 fn references(evidence: &Evidence<'_>) -> String {
-    let rows = reference::comparisons(evidence);
+    let rows = reference::references(evidence);
+    let missing = missing_theory(evidence.setup);
     if rows.is_empty() {
-        return String::new();
+        return missing;
     }
     let mut html = String::from(
         "<div class=\"references\"><table>\n<thead><tr><th>Figure</th><th>This run</th><th>Reference</th>\
@@ -176,5 +183,25 @@ fn references(evidence: &Evidence<'_>) -> String {
     }
     html.push_str("</tbody>\n</table></div>\n");
     let _ = writeln!(html, "<p class=\"note\">{}</p>", reference::REMARK);
+    html.push_str(&missing);
     html
+}
+
+/// Why there is no theory where a reader would look for it.
+fn missing_theory(setup: &Setup) -> String {
+    let sentence = match (&setup.known, &setup.unreadable) {
+        (Some(known), _) => laws::obstacle(&known.scenario).map(|obstacle| {
+            format!(
+                "No law of a homogeneous gas is shown: theory as it is used here does not know {obstacle}."
+            )
+        }),
+        (None, Some(reason)) => Some(format!(
+            "The scenario in the log cannot be read by this version ({}). So nothing is said of theory, of walls that move and \
+             of what is poured, and grains are drawn with a diameter of {}.",
+            reason.trim().replace('\n', " "),
+            number(setup.diameter, 4)
+        )),
+        (None, None) => None,
+    };
+    sentence.map_or_else(String::new, |sentence| format!("<p class=\"note\">{}</p>\n", escape(&sentence)))
 }

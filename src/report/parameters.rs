@@ -29,7 +29,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
         );
     }
     let counters = figures::counters(evidence);
-    let counters = counters.into_iter().map(|(name, value)| (in_words(name), count(value)));
+    let counters = counters.into_iter().map(|(name, value)| (in_words(name), whole(value)));
     html.push_str(&folded("What the engine counted", counters));
     let metadata = evidence.log.metadata.iter().map(|(key, value)| (key.clone(), value.clone()));
     html.push_str(&folded("Metadata of the log", metadata));
@@ -57,6 +57,11 @@ fn costs(evidence: &Evidence<'_>) -> String {
         parts.push(format!("{} MB of memory at most", number(bytes / 1e6, 3)));
     }
     if parts.is_empty() { String::new() } else { format!("{}.", parts.join(", ")) }
+}
+
+/// A count; a share has digits behind its point.
+fn whole(value: f64) -> String {
+    if value.fract() == 0.0 { count(value) } else { number(value, 3) }
 }
 
 fn text(value: &Value) -> String {

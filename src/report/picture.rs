@@ -4,6 +4,7 @@ use super::colour::ColourMap;
 use super::raster::Raster;
 use super::scene::{Scene, speed};
 use crate::record::contents::{Frame, Walls};
+use crate::scenario::kinds::Kinds;
 
 /// The paper that grains lie on.
 pub(super) const PAPER: [u8; 3] = [0xf7, 0xf5, 0xf0];
@@ -16,13 +17,13 @@ const FRAME: f64 = 5.0;
 /// Grains are not drawn smaller than this [pixel].
 pub(super) const LEAST_RADIUS: f64 = 0.9;
 
-/// A picture of `frame` as a PNG file of `width` pixels: grains as discs of their `diameter`,
+/// A picture of `frame` as a PNG file of `width` pixels: grains as discs of the diameters that `kinds` gives them,
 /// from deep blue (at rest) to amber (the fastest two per cent), with the walls around them.
 ///
 /// The aspect ratio is true; open sides are cut at the grains; spheres are seen along the second axis.
-pub fn grains_png(frame: &Frame, walls: Option<&Walls>, diameter: f64, width: u32) -> Vec<u8> {
-    let scene = Scene::of(&[frame], walls, diameter, false);
-    picture(frame, &scene, scene.speeds[0], diameter, f64::from(width)).png()
+pub fn grains_png(frame: &Frame, walls: Option<&Walls>, kinds: &Kinds, width: u32) -> Vec<u8> {
+    let scene = Scene::of(&[frame], walls, kinds.largest_diameter(), false);
+    picture(frame, &scene, scene.speeds[0], kinds, f64::from(width)).png()
 }
 
 /// Places of the scene on the paper.
@@ -52,19 +53,20 @@ impl Projection<'_> {
 }
 
 /// `frame` seen as `scene` says, with colours up to the speed `fastest`.
-pub(super) fn picture(frame: &Frame, scene: &Scene, fastest: f64, diameter: f64, width: f64) -> Raster {
+pub(super) fn picture(frame: &Frame, scene: &Scene, fastest: f64, kinds: &Kinds, width: f64) -> Raster {
     let inner = (width - 2.0 * FRAME).max(8.0);
     let height = (inner / scene.aspect()).clamp(4.0, 4.0 * width) + 2.0 * FRAME;
     let across = if scene.is_turned { scene.span(1) } else { scene.span(0) };
     let projection = Projection { scene, scale: inner / across, size: [width, height.round()] };
     let mut raster = Raster::new(width as usize, height.round() as usize, PAPER);
-    let radius = (0.5 * diameter * projection.scale).max(LEAST_RADIUS);
     for index in drawing_order(frame, scene.is_deep) {
         let position = frame.positions[index].map(f64::from);
         let velocity = frame.velocities.get(index).copied().unwrap_or_default();
         let colour = ColourMap::Speed.at(speed(velocity) / fastest);
         let colour = if scene.is_deep { in_haze(colour, position[1], scene.window[1]) } else { colour };
         let pixel = projection.pixel(position);
+        let diameter = kinds.diameter(frame.ids.get(index).copied());
+        let radius = (0.5 * diameter * projection.scale).max(LEAST_RADIUS);
         if scene.is_deep && radius > 2.0 {
             // A rim sets a sphere apart from those behind it.
             raster.disc(pixel, radius, darker(colour));
@@ -143,14 +145,33 @@ mod tests {
 
     #[test]
     fn the_aspect_ratio_is_true() {
-        let frame = Frame::default();
-        assert_eq!(size(&grains_png(&frame, Some(&walls(40.0, 20.0)), 1.0, 410)), (410, 210));
+        let (frame, alike) = (Frame::default(), Kinds::of_diameter(1.0));
+        assert_eq!(size(&grains_png(&frame, Some(&walls(40.0, 20.0)), &alike, 410)), (410, 210));
         // A tall tube lies on its side.
-        assert_eq!(size(&grains_png(&frame, Some(&walls(20.0, 200.0)), 1.0, 410)), (410, 50));
+        assert_eq!(size(&grains_png(&frame, Some(&walls(20.0, 200.0)), &alike, 410)), (410, 50));
+    }
+
+    #[test]
+    fn large_grains_are_drawn_large() {
+        let kinds = Kinds::of_species(&[1.0, 4.0], vec![0, 1]);
+        let frame = |id: u32| Frame {
+            positions: vec![[10.0, 10.0, 0.0]],
+            velocities: vec![[0.0; 3]],
+            ids: vec![id],
+            ..Frame::default()
+        };
+        let scene = Scene::of(&[&frame(0)], Some(&walls(20.0, 20.0)), 4.0, false);
+        // Discs of 5 and 20 pixels in radius.
+        let ink = |id: u32| {
+            let colour = ColourMap::Speed.at(0.0);
+            picture(&frame(id), &scene, 1.0, &kinds, 210.0).pixels_of(colour)
+        };
+        let ratio = ink(1) as f64 / ink(0) as f64;
+        assert!((13.0..21.0).contains(&ratio), "{ratio}");
     }
 
     #[test]
     fn an_empty_picture_is_a_picture() {
-        assert_eq!(size(&grains_png(&Frame::default(), None, 1.0, 100)).0, 100);
+        assert_eq!(size(&grains_png(&Frame::default(), None, &Kinds::of_diameter(1.0), 100)).0, 100);
     }
 }

@@ -49,7 +49,8 @@
       for (let k = 0; k < places.length; k++) places[k] = data.getUint16(2 * (grain * axes + k), true) / 65535;
       const start = 2 * axes * total + grain;
       grain += count;
-      return { count, places, speeds: bytes.subarray(start, start + count) };
+      const kinds = run.diameters ? bytes.subarray(start + total, start + total + count) : null;
+      return { count, places, kinds, speeds: bytes.subarray(start, start + count) };
     });
   }
 
@@ -77,9 +78,12 @@
     return { scale, at };
   }
 
-  function drawGrains(frame, project, radius) {
+  // The radius of a grain: of its species where grains differ.
+  const radiusOf = (frame, k, radii) => (frame.kinds && radii[frame.kinds[k]]) || radii[0];
+
+  function drawGrains(frame, project, radii) {
     // Grains of one colour are drawn in one path; far spheres first and paler.
-    if (run.deep) return drawSpheres(frame, project, radius);
+    if (run.deep) return drawSpheres(frame, project, radii);
     const last = run.colours.length - 1;
     const bins = run.colours.map(() => []);
     for (let k = 0; k < frame.count; k++) bins[Math.min(last, (frame.speeds[k] * (last + 1)) >> 8)].push(k);
@@ -89,6 +93,7 @@
       pen.beginPath();
       for (const k of bin) {
         const [x, y] = project.at(frame.places[2 * k], frame.places[2 * k + 1]);
+        const radius = radiusOf(frame, k, radii);
         pen.moveTo(x + radius, y);
         pen.arc(x, y, radius, 0, 7);
       }
@@ -96,18 +101,18 @@
     });
   }
 
-  function drawSpheres(frame, project, radius) {
+  function drawSpheres(frame, project, radii) {
     const spheres = [];
     for (let k = 0; k < frame.count; k++) {
       const place = project.at(frame.places[3 * k], frame.places[3 * k + 1], frame.places[3 * k + 2]);
-      place.push(frame.speeds[k]);
+      place.push(frame.speeds[k], radiusOf(frame, k, radii));
       spheres.push(place);
     }
     spheres.sort((a, b) => b[2] - a[2]);
     const last = run.colours.length - 1;
     pen.lineWidth = 0.7;
     pen.strokeStyle = "rgba(30, 20, 40, 0.35)";
-    for (const [x, y, depth, speed] of spheres) {
+    for (const [x, y, depth, speed, radius] of spheres) {
       const haze = Math.max(0, Math.min(1, 0.5 + depth)) * (HAZES - 1);
       pen.fillStyle = hazy[Math.round(haze)][Math.min(last, (speed * (last + 1)) >> 8)];
       pen.beginPath();
@@ -154,9 +159,9 @@
     pen.fillStyle = PAPER;
     pen.fillRect(0, 0, width, height);
     const project = projection(width, height);
-    const radius = Math.max(0.9, 0.5 * run.diameter * project.scale);
+    const radii = (run.diameters || [run.diameter]).map((diameter) => Math.max(0.9, 0.5 * diameter * project.scale));
     if (run.deep) drawSides(project);
-    drawGrains(frames[current], project, radius);
+    drawGrains(frames[current], project, radii);
     if (!run.deep) drawSides(project);
     const time = number(run.times[current], 4) + (run.units.time ? "\u202f" + run.units.time : "");
     const grains = run.grains[current];

@@ -10,6 +10,7 @@ use super::number::number;
 use super::scene::{Scene, speed};
 use super::setup::Setup;
 use crate::record::contents::Frame;
+use crate::scenario::kinds::Kinds;
 
 /// Frames beyond these are left out, evenly.
 const MOST_FRAMES: usize = 200;
@@ -24,7 +25,7 @@ const SCRIPT: &str = include_str!("player.js");
 
 /// The frames that the page shows: first and last, and others evenly between, as many as the page can hold.
 pub(super) fn chosen(frames: &[Frame]) -> Vec<&Frame> {
-    // Two bytes per place and one per speed, with the third place where there is one.
+    // Two bytes per place, one per speed (and one per species, which is no matter), with the third place where there is one.
     let is_deep = frames.iter().any(|f| f.positions.iter().any(|p| p[2] != 0.0));
     let bytes = if is_deep { 7 } else { 5 };
     let total: usize = frames.iter().map(|f| bytes * f.positions.len().min(MOST_POINTS)).sum();
@@ -47,12 +48,16 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
     let packed: Vec<Packed> = frames
         .iter()
         .zip(&scene.speeds)
-        .map(|(frame, fastest)| Packed::of(frame, scene, *fastest, share))
+        .map(|(frame, fastest)| Packed::of(frame, scene, &setup.kinds, *fastest, share))
         .collect();
     let mut bytes = Vec::new();
     // All positions first: two-byte numbers must begin at even places.
     packed.iter().for_each(|p| p.places.iter().for_each(|q| bytes.extend_from_slice(&q.to_le_bytes())));
     packed.iter().for_each(|p| bytes.extend_from_slice(&p.speeds));
+    let are_told = setup.kinds.are_told();
+    if are_told {
+        packed.iter().for_each(|p| bytes.extend_from_slice(&p.species));
+    }
     let colours: Vec<String> = (0..64).map(|k| ColourMap::Speed.hexadecimal(f64::from(k) / 63.0)).collect();
     let parameters = json!({
         "times": frames.iter().map(|f| f.time).collect::<Vec<f64>>(),
@@ -64,6 +69,7 @@ pub(super) fn html(frames: &[&Frame], scene: &Scene, setup: &Setup) -> String {
         "deep": scene.is_deep,
         "turned": scene.is_turned,
         "diameter": setup.diameter,
+        "diameters": are_told.then(|| setup.kinds.diameters().collect::<Vec<f64>>()),
         "colours": colours,
         "units": { "time": if setup.units[2] == "time" { "" } else { &setup.units[2] }, "speed": setup.with_unit("", crate::observe::measure::Dimension { mass: 0, length: 1, time: -1 }) },
     });
@@ -99,15 +105,16 @@ fn caption(frames: &[&Frame], share: f64, scene: &Scene) -> String {
     format!("{shown}, at {} times; {colours}, which ends where the fastest 2 % begin.", frames.len())
 }
 
-/// A frame in two-byte places and one-byte speeds.
+/// A frame in two-byte places, one-byte speeds and species.
 struct Packed {
     places: Vec<u16>,
     speeds: Vec<u8>,
+    species: Vec<u8>,
 }
 
 impl Packed {
-    fn of(frame: &Frame, scene: &Scene, fastest: f64, share: f64) -> Self {
-        let mut packed = Self { places: Vec::new(), speeds: Vec::new() };
+    fn of(frame: &Frame, scene: &Scene, kinds: &Kinds, fastest: f64, share: f64) -> Self {
+        let mut packed = Self { places: Vec::new(), speeds: Vec::new(), species: Vec::new() };
         let axes = if scene.is_deep { 3 } else { 2 };
         for index in chosen_grains(frame, share) {
             for axis in 0..axes {
@@ -116,6 +123,7 @@ impl Packed {
                 packed.places.push((share.clamp(0.0, 1.0) * 65535.0).round() as u16);
             }
             let velocity = frame.velocities.get(index).copied().unwrap_or_default();
+            packed.species.push(frame.ids.get(index).map_or(0, |id| kinds.species_of(*id)));
             packed.speeds.push((255.0 * speed(velocity) / fastest).clamp(0.0, 255.0).round() as u8);
         }
         packed

@@ -93,6 +93,14 @@ impl Raster {
 }
 
 #[cfg(test)]
+impl Raster {
+    /// How many pixels have exactly this colour.
+    pub(super) fn pixels_of(&self, colour: [u8; 3]) -> usize {
+        self.pixels.iter().filter(|pixel| **pixel == colour).count()
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -1,11 +1,18 @@
-//! What a report needs to know about the run beside its measures: read from the scenario's text and the summary.
+//! What a report needs to know about the run beside its measures: from the scenario in its log, and the summary.
 
 use serde_json::{Map, Value};
-use toml_edit::{DocumentMut, Item};
 
 use super::number::unit;
+use super::plain_text::PlainText;
+use crate::comparison::laws;
+use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::observe::layout;
 use crate::observe::measure::{Column, Dimension};
-use crate::record::contents::RunLog;
+use crate::record::contents::{RunLog, Walls};
+use crate::scenario::kinds::Kinds;
+use crate::scenario::model::{AnyScenario, EngineKind, Scenario};
+use crate::scenario::{Overrides, parse};
+use crate::space::Vector;
 
 /// The parameters that plots, laws and references depend on; `None` where the scenario does not have them.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,78 +29,232 @@ pub(crate) struct Setup {
     pub size: Vec<f64>,
     /// Constant acceleration [length/time²].
     pub gravity: Vec<f64>,
-    /// Diameter of a grain [length].
+    /// Diameter of a grain, of the first kind where there are several [length].
     pub diameter: f64,
-    /// Mass of a grain [mass].
-    pub mass: f64,
-    /// Constant normal restitution; `None` for another law.
-    pub restitution: Option<f64>,
+    /// Sizes of the grains, and which grain is of which kind.
+    pub kinds: Kinds,
     /// N·V_p over the volume of the box.
     pub volume_fraction: Option<f64>,
-    /// Side of a cell, as wished [length].
-    pub cell_size: Option<f64>,
-    /// Velocity along the first axis of the lower and upper wall of the second [length/time].
-    pub wall_velocities: Option<[f64; 2]>,
     /// Whether every axis is periodic.
     pub is_periodic: bool,
     /// `[axis]`: whether that axis is periodic.
     pub periodic_axes: [bool; 3],
     /// Whether a side is open, so that grains can leave.
     pub has_open_side: bool,
-    /// Whether collisions transfer momentum as Enskog theory asks for every restitution.
-    pub is_transfer_corrected: bool,
-    /// Grains that the source pours, and how many per time.
-    pub source: Option<[f64; 2]>,
     /// Grains at the start.
     pub count: Option<f64>,
     /// Names of the units of length, mass and time.
     pub units: [String; 3],
+    /// What a checked scenario says beside this; `None` where that in the log cannot be read.
+    pub known: Option<Known>,
+    /// Why it cannot be read.
+    pub unreadable: Option<String>,
+}
+
+/// What only a checked scenario tells.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Known {
+    /// The scenario, for laws of theory.
+    pub scenario: AnyScenario,
+    /// Constant normal restitution; `None` for another law.
+    pub restitution: Option<f64>,
+    /// Mass of a grain, of the first kind where there are several [mass].
+    pub mass: f64,
+    /// Kinds of grains.
+    pub species: usize,
+    /// Whether grains spin.
+    pub is_rough: bool,
+    /// Sides of a cell [length].
+    pub cell: Vec<f64>,
+    /// Walls that move past each other.
+    pub shear: Option<Shear>,
+    /// Whether a wall moves.
+    pub has_moving_wall: bool,
+    /// Grains that the source pours, and how many per time.
+    pub source: Option<[f64; 2]>,
+}
+
+/// Walls that move past each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shear {
+    /// Velocity of the lower wall along the direction of shear [length/time].
+    pub lower: f64,
+    /// Velocity of the upper wall relative to it [length/time].
+    pub speed: f64,
+    /// Between the walls [length].
+    pub height: f64,
+    /// Whether nothing else drives the grains, so that a straight line from wall to wall is expected.
+    pub is_alone: bool,
+}
+
+impl Known {
+    fn of(scenario: AnyScenario) -> Self {
+        match &scenario {
+            AnyScenario::Two(checked) => Self::read(checked, scenario.clone()),
+            AnyScenario::Three(checked) => Self::read(checked, scenario.clone()),
+        }
+    }
+
+    fn read<V: Vector>(checked: &Scenario<V>, scenario: AnyScenario) -> Self {
+        let restitution = match checked.restitution {
+            RestitutionLaw::Constant(Constant(restitution)) => Some(restitution),
+            _ => None,
+        };
+        let is_alone = laws::Laws::of(checked).shear().is_some();
+        let shear = layout::shear(&checked.setting()).map(|shear| Shear {
+            lower: shear.lower,
+            speed: shear.speed,
+            height: checked.size[shear.axis],
+            is_alone,
+        });
+        let sides = checked.grid_size.components().into_iter().zip(checked.cells);
+        Known {
+            restitution,
+            mass: checked.grain.mass,
+            species: checked.species.len().max(1),
+            is_rough: checked.roughness.is_some(),
+            cell: sides.map(|(side, cells)| side / f64::from(cells)).collect(),
+            shear,
+            has_moving_wall: checked.boundary.largest_wall_speed() > 0.0,
+            source: checked.source.as_ref().map(|source| [f64::from(source.count), source.rate]),
+            scenario,
+        }
+    }
+
+    /// Whether cells have sides of `diameters` of a grain, to 2.5 %.
+    pub(crate) fn has_cells_of(&self, diameters: f64) -> bool {
+        let expected = diameters * self.scenario.diameter();
+        !self.scenario.engine().is_event_driven()
+            && self.cell.iter().all(|side| (side / expected - 1.0).abs() < 0.025)
+    }
+
+    /// Whether grains are smooth, of one kind and of this constant restitution.
+    pub(crate) fn is_plain(&self, restitution: f64) -> bool {
+        let is_it = self.restitution.is_some_and(|r| (r - restitution).abs() < 1e-9);
+        is_it && self.species == 1 && !self.is_rough
+    }
+
+    /// Whether it runs with `engine`.
+    pub(crate) fn runs_with(&self, engine: EngineKind) -> bool {
+        self.scenario.engine() == engine
+    }
 }
 
 impl Setup {
-    /// Reads the parameters of `log`, with `summary` first where both have one.
+    /// The parameters of `log`, with `summary` first where both have one.
     pub(crate) fn of(log: &RunLog, summary: &Map<String, Value>) -> Self {
-        // A text that does not parse leaves the summary, which is enough for a plain report.
-        let document = log.scenario.parse::<DocumentMut>().unwrap_or_default();
         let text = |key: &str| {
             let known = summary.get(key).and_then(Value::as_str).map(str::to_owned);
             known.or_else(|| log.metadata.get(key).cloned())
         };
-        let figure = |key: &str| summary.get(key).and_then(Value::as_f64);
-        let at = |path: &str| item(&document, path);
-        let scenario = text("scenario").unwrap_or_else(|| "run".to_owned());
-        let size = numbers(at("domain.size"));
-        let dimension = figure("dimension").or_else(|| float(at("dimension")));
-        let gravity = numbers(at("gravity"));
-        let name = |key: &str, default: &str| {
-            let named = at(&format!("units.{key}")).and_then(Item::as_str);
-            named.map_or_else(|| default.to_owned(), |n| if n == "1" { String::new() } else { n.to_owned() })
+        let name = text("scenario").unwrap_or_else(|| "run".to_owned());
+        let mut setup = match parse(&name, &log.scenario, &Overrides::default()) {
+            Ok(AnyScenario::Two(scenario)) => Self::checked(&scenario, log, AnyScenario::Two),
+            Ok(AnyScenario::Three(scenario)) => Self::checked(&scenario, log, AnyScenario::Three),
+            Err(error) => Self::unchecked(&name, log, &error.to_string()),
         };
-        Self {
-            title: at("title").and_then(Item::as_str).map_or_else(|| scenario.clone(), str::to_owned),
-            engine: text("engine")
-                .or_else(|| at("engine.kind").and_then(Item::as_str).map(str::to_owned))
-                .unwrap_or_else(|| "unknown engine".to_owned()),
-            dimension: dimension.map_or(2, |d| d as usize),
-            gravity,
-            diameter: float(at("particles.diameter")).unwrap_or(1.0),
-            mass: float(at("particles.mass")).unwrap_or(1.0),
-            restitution: float(at("particles.restitution")),
-            volume_fraction: figure("volume_fraction").or_else(|| float(at("particles.volume_fraction"))),
-            cell_size: float(at("engine.cell_size")),
-            wall_velocities: wall_velocities(&document),
-            is_periodic: is_periodic(log, &document),
-            periodic_axes: ["x", "y", "z"].map(|axis| is_axis_periodic(log, &document, axis)),
-            has_open_side: has_open_side(log, &document),
-            is_transfer_corrected: at("engine.transfer").and_then(Item::as_str) == Some("corrected"),
-            source: float(at("source.count"))
-                .zip(float(at("source.rate")))
-                .map(|(count, rate)| [count, rate]),
-            count: figure("particles_initial"),
-            units: [name("length", "length"), name("mass", "mass"), name("time", "time")],
-            scenario,
-            size,
+        let figure = |key: &str| summary.get(key).and_then(Value::as_f64);
+        if let Some(engine) = text("engine") {
+            setup.engine = engine;
         }
+        if let Some(dimension) = figure("dimension") {
+            setup.dimension = dimension as usize;
+        }
+        if setup.known.is_some() {
+            setup.volume_fraction = figure("volume_fraction").or(setup.volume_fraction);
+        }
+        setup.count = figure("particles_initial").or(setup.count);
+        setup.scenario = name;
+        if let Some(walls) = &log.walls {
+            setup.see_walls(walls);
+        }
+        setup
+    }
+
+    /// From a checked scenario.
+    fn checked<V: Vector>(
+        scenario: &Scenario<V>,
+        log: &RunLog,
+        any: impl Fn(Scenario<V>) -> AnyScenario,
+    ) -> Self {
+        let units = [&scenario.units.length, &scenario.units.mass, &scenario.units.time];
+        let mut setup = Self {
+            title: scenario.title.clone(),
+            engine: scenario.engine.kind.name().to_owned(),
+            dimension: V::DIMENSION,
+            size: scenario.size.components(),
+            gravity: scenario.gravity.components(),
+            diameter: scenario.grain.diameter,
+            kinds: Kinds::new(scenario, log.species.clone()),
+            volume_fraction: Some(scenario.volume_fraction()),
+            count: Some(f64::from(scenario.count)),
+            units: units.map(|name| if name == "1" { String::new() } else { name.clone() }),
+            known: Some(Known::of(any(scenario.clone()))),
+            ..Self::nothing()
+        };
+        setup.see_walls(&Walls::new(&scenario.boundary, V::ZERO, scenario.size));
+        setup
+    }
+
+    /// From the text of a scenario that this version does not take: what pictures need, and no more.
+    fn unchecked(name: &str, log: &RunLog, reason: &str) -> Self {
+        let text = PlainText::of(&log.scenario);
+        Self {
+            title: text.title.unwrap_or_else(|| name.to_owned()),
+            engine: text.engine.unwrap_or_else(|| "unknown engine".to_owned()),
+            dimension: text.dimension.unwrap_or(2),
+            size: text.size,
+            gravity: text.gravity,
+            diameter: text.diameter,
+            kinds: Kinds::of_diameter(text.diameter),
+            units: text.units,
+            unreadable: Some(if log.scenario.is_empty() {
+                "it is not there".to_owned()
+            } else {
+                reason.to_owned()
+            }),
+            ..Self::nothing()
+        }
+    }
+
+    fn nothing() -> Self {
+        Self {
+            title: String::new(),
+            scenario: String::new(),
+            engine: String::new(),
+            dimension: 2,
+            size: Vec::new(),
+            gravity: Vec::new(),
+            diameter: 1.0,
+            kinds: Kinds::of_diameter(1.0),
+            volume_fraction: None,
+            is_periodic: false,
+            periodic_axes: [false; 3],
+            has_open_side: false,
+            count: None,
+            units: ["length", "mass", "time"].map(str::to_owned),
+            known: None,
+            unreadable: None,
+        }
+    }
+
+    /// What the sides of the box are.
+    fn see_walls(&mut self, walls: &Walls) {
+        let mut sides = walls.sides.iter().flatten();
+        self.is_periodic = sides.clone().all(|side| side.is_empty() || side == "periodic");
+        self.has_open_side = sides.any(|side| side == "open");
+        self.periodic_axes =
+            std::array::from_fn(|axis| walls.sides[axis].iter().all(|side| side == "periodic"));
+    }
+
+    /// Grains that the source pours, and how many per time.
+    pub(crate) fn source(&self) -> Option<[f64; 2]> {
+        self.known.as_ref()?.source
+    }
+
+    /// Walls that move past each other.
+    pub(crate) fn shear(&self) -> Option<Shear> {
+        self.known.as_ref()?.shear
     }
 
     /// Whether a constant force acts.
@@ -117,9 +278,10 @@ impl Setup {
         self.gravity_axis().is_some() && !self.is_pipe()
     }
 
-    /// Whether nothing drives the gas, so that it ages by its collisions.
+    /// Whether nothing drives the gas, so that it ages by its collisions; not where nobody knows.
     pub(crate) fn is_undriven(&self) -> bool {
-        !self.has_gravity() && self.source.is_none() && self.wall_velocities.is_none()
+        let is_still = |known: &Known| known.source.is_none() && !known.has_moving_wall;
+        !self.has_gravity() && self.known.as_ref().is_some_and(is_still)
     }
 
     /// The unit of a quantity in the names of the scenario.
@@ -160,76 +322,54 @@ impl Setup {
     }
 }
 
-/// The item at a dotted path.
-fn item<'a>(document: &'a DocumentMut, path: &str) -> Option<&'a Item> {
-    path.split('.').try_fold(document.as_item(), |item, key| item.get(key))
-}
-
-/// A number, whole or not.
-fn float(item: Option<&Item>) -> Option<f64> {
-    let item = item?;
-    item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64))
-}
-
-/// All numbers of an array.
-fn numbers(item: Option<&Item>) -> Vec<f64> {
-    let values = item.and_then(Item::as_array).into_iter().flatten();
-    values.filter_map(|v| v.as_float().or_else(|| v.as_integer().map(|whole| whole as f64))).collect()
-}
-
-fn wall_velocities(document: &DocumentMut) -> Option<[f64; 2]> {
-    let along = |side: &str| numbers(item(document, &format!("boundary.y.{side}.velocity"))).first().copied();
-    let [lower, upper] = [along("lower"), along("upper")];
-    (lower.is_some() || upper.is_some()).then(|| [lower.unwrap_or(0.0), upper.unwrap_or(0.0)])
-}
-
-/// From the recorded box; from the scenario's text for a log without one.
-fn is_periodic(log: &RunLog, document: &DocumentMut) -> bool {
-    if let Some(walls) = &log.walls {
-        return walls.sides.iter().flatten().all(|side| side.is_empty() || side == "periodic");
-    }
-    let sides = item(document, "boundary").and_then(Item::as_table_like);
-    sides.is_some_and(|sides| sides.iter().all(|(_, side)| side.as_str() == Some("periodic")))
-}
-
-/// From the recorded box; from the scenario's text for a log without one.
-fn is_axis_periodic(log: &RunLog, document: &DocumentMut, axis: &str) -> bool {
-    let place = ["x", "y", "z"].iter().position(|name| *name == axis).unwrap_or(0);
-    log.walls.as_ref().map_or_else(
-        || item(document, &format!("boundary.{axis}")).and_then(Item::as_str) == Some("periodic"),
-        |walls| walls.sides[place].iter().all(|side| side == "periodic"),
-    )
-}
-
-fn has_open_side(log: &RunLog, document: &DocumentMut) -> bool {
-    log.walls.as_ref().map_or_else(
-        || item(document, "boundary").is_some_and(|sides| sides.to_string().contains("\"open\"")),
-        |walls| walls.sides.iter().flatten().any(|side| side == "open"),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn parameters_are_read_from_the_text() {
-        let scenario = "title = \"Shear\"\ndimension = 2\n[domain]\nsize = [40, 20.5]\n[boundary]\nx = \"periodic\"\n\
-                        y.lower = { wall = \"rough\", velocity = [-0.5, 0] }\n\
-                        y.upper = { wall = \"rough\", velocity = [0.5, 0] }\n\
-                        [particles]\ndiameter = 2\nrestitution = 0.9\n[units]\nlength = \"d\"";
-        let log = RunLog { scenario: scenario.to_owned(), ..RunLog::default() };
-        let setup = Setup::of(&log, &Map::new());
-        assert_eq!(setup.size, [40.0, 20.5]);
-        assert_eq!(setup.wall_velocities, Some([-0.5, 0.5]));
-        assert_eq!((setup.diameter, setup.restitution), (2.0, Some(0.9)));
-        assert!(!setup.is_periodic && !setup.has_gravity());
-        assert_eq!(setup.length_label("height"), "height [d]");
+    const GAS: &str = "dimension = 3\n[domain]\nsize = [20, 20.5, 30]\n[particles]\ncount = 100\n\
+                       diameter = 2\nmass = 3\nrestitution = 0.9\n[engine]\nkind = \"cba\"\n[run]\ntime = 1.0\n";
+
+    fn setup(text: &str) -> Setup {
+        Setup::of(&RunLog { scenario: text.to_owned(), ..RunLog::default() }, &Map::new())
     }
 
     #[test]
-    fn a_broken_text_is_survived() {
-        let log = RunLog { scenario: "= [".to_owned(), ..RunLog::default() };
-        assert_eq!(Setup::of(&log, &Map::new()).title, "run");
+    fn parameters_are_those_of_the_scenario() {
+        let walls = "[boundary]\nx.lower = { wall = \"rough\", velocity = [0, 0, -0.5] }\n\
+                     x.upper = { wall = \"rough\", velocity = [0, 0, 0.5] }\n[units]\nlength = \"d\"\n";
+        let sheared = setup(&format!("{GAS}{walls}"));
+        assert_eq!(sheared.unreadable, None);
+        assert_eq!(sheared.size, [20.0, 20.5, 30.0]);
+        let shear = sheared.shear().unwrap();
+        assert_eq!((shear.speed, shear.height, shear.is_alone), (1.0, 20.0, true));
+        assert_eq!((sheared.diameter, sheared.known.as_ref().unwrap().restitution), (2.0, Some(0.9)));
+        assert!(!sheared.is_periodic && !sheared.has_gravity() && !sheared.is_undriven());
+        assert_eq!(sheared.length_label("height"), "height [d]");
+        let falling = setup(&format!("gravity = [0, 0, -1]\n{GAS}{walls}"));
+        assert!(falling.shear().is_some_and(|shear| !shear.is_alone));
+    }
+
+    #[test]
+    fn a_shaken_box_is_driven() {
+        let free = setup(&format!("{GAS}[boundary]\nx = \"periodic\"\ny = \"periodic\"\nz = \"periodic\"\n"));
+        assert!(free.is_undriven() && free.is_periodic, "{:?}", free.unreadable);
+        let still = format!(
+            "{GAS}[boundary]\nz.lower = {{ wall = \"smooth\" }}\nz.upper = {{ wall = \"smooth\" }}\n"
+        );
+        assert!(setup(&still).is_undriven());
+        let shaken =
+            still.replacen("wall = \"smooth\"", "wall = \"vibrating\", amplitude = 0.1, frequency = 1.0", 1);
+        let shaken = setup(&shaken);
+        assert!(shaken.unreadable.is_none() && !shaken.is_undriven(), "{:?}", shaken.unreadable);
+    }
+
+    #[test]
+    fn a_text_of_another_version_says_less() {
+        let newer = setup(&format!("{GAS}[engine.quantum]\nspin = 1\n"));
+        assert!(newer.unreadable.as_ref().unwrap().contains("quantum"), "{newer:?}");
+        assert_eq!((newer.diameter, newer.volume_fraction), (2.0, None));
+        assert!(newer.known.is_none() && !newer.is_undriven());
+        let broken = setup("= [");
+        assert_eq!((broken.title.as_str(), broken.known), ("run", None));
     }
 }

@@ -48,9 +48,8 @@ fn ranges(law: &[[f64; 2]], measured: &[[f64; 2]]) -> [Option<[f64; 2]>; 2] {
     [is_range.then(|| [law[0][0], law[1][0]]), is_range.then_some([least - room, most + room])]
 }
 
-/// The straight line from wall to wall.
+/// The straight line from wall to wall, where nothing but the walls drives the grains.
 fn linear_law(evidence: &Evidence<'_>) -> Option<Vec<[f64; 2]>> {
-    let [lower, upper] = evidence.setup.wall_velocities?;
-    let height = evidence.setup.size.get(1)?;
-    Some(vec![[0.0, lower], [*height, upper]])
+    let shear = evidence.setup.shear().filter(|shear| shear.is_alone)?;
+    Some(vec![[0.0, shear.lower], [shear.height, shear.lower + shear.speed]])
 }

@@ -87,7 +87,7 @@ fn last_profiles(evidence: &Evidence<'_>, densities: &[&Profile]) -> Option<Plot
         y_label: "volume fraction".to_owned(),
         ..Plot::default()
     };
-    if setup.wall_velocities.is_some() && densities.len() >= 4 {
+    if setup.shear().is_some() && densities.len() >= 4 {
         let late = &densities[densities.len() / 2..];
         plot.curves = vec![
             Curve::new("last recording", density_points(last), Stroke::Faint, Ink::Series(5)),

@@ -35,7 +35,6 @@ use crate::stopwatch::Stopwatch;
 use folder::{FolderError, REPORT, RunFolder};
 use recorder::Recorder;
 use summary::Ending;
-pub use summary::NUMBERS;
 
 /// Raised whenever a release changes the bits of a trajectory.
 pub const NUMERICS: u32 = 2;

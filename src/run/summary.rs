@@ -1,4 +1,5 @@
-//! `summary.json`: one flat object that says what a run was and what came out.
+//! `summary.json`: one flat object that says what a run was and what came out; its keys stand in
+//! [`crate::simulation::figures`].
 
 use serde_json::{Map, Value, json};
 
@@ -8,48 +9,10 @@ use crate::matter::state_hash::state_hash;
 use crate::observe::measure::Figure;
 use crate::observe::moments;
 use crate::simulation::Simulation;
+use crate::simulation::figures::is_of_every_run;
 use crate::simulation::limits::EndReason;
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
-
-/// Keys of numbers that every summary has, whatever the scenario measures; null where they do not apply.
-pub const NUMBERS: [&str; 35] = [
-    "dimension",
-    "particles_initial",
-    "particles_final",
-    "volume_fraction",
-    "seed",
-    "threads",
-    "numerics",
-    "steps",
-    "steps_capped",
-    "events",
-    "collisions",
-    "candidates",
-    "cell_collisions",
-    "rejected_moves",
-    "cell_capacity",
-    "largest_occupancy",
-    "poured",
-    "removed",
-    "collisions_per_particle",
-    "simulated_time",
-    "kinetic_energy_initial",
-    "kinetic_energy_final",
-    "temperature",
-    "momentum_drift",
-    "wall_hits",
-    "cell_crossings",
-    "list_renewals",
-    "annulled_events",
-    "cured_share",
-    "invalid_states",
-    "resumed_at",
-    "wall_seconds",
-    "particle_steps_per_second",
-    "events_per_second",
-    "peak_memory_bytes",
-];
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +36,8 @@ pub(super) fn summary<V: Vector>(
     summary.append(&mut what_events_were(simulation));
     summary.append(&mut what_it_cost(simulation, watch));
     summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
-    let fixed: Vec<String> = summary.keys().cloned().collect();
-    for figure in figures.iter().filter(|figure| !fixed.contains(&figure.name)) {
+    debug_assert!(summary.keys().all(|key| is_of_every_run(key)), "a key that its table lacks");
+    for figure in figures.iter().filter(|figure| !is_of_every_run(&figure.name)) {
         let error = format!("{}_standard_error", figure.name);
         summary.insert(figure.name.clone(), json!(figure.value.filter(|value| value.is_finite())));
         summary.insert(error, json!(figure.standard_error.filter(|value| value.is_finite())));

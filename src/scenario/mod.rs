@@ -14,6 +14,7 @@ mod estimate;
 mod file;
 pub mod geometry;
 pub mod initial;
+pub mod kinds;
 mod locate;
 pub mod model;
 mod overrides;

@@ -1,6 +1,7 @@
 //! A run: a scenario's gas, the engine that advances it, the measures that watch.
 
 pub mod assembly;
+pub mod figures;
 pub mod fit;
 pub mod limits;
 pub mod pouring;

@@ -13,6 +13,14 @@ use super::trial::{advance_until, figures, for_each, run, scenario, start};
 
 const SEEDS: [u64; 4] = [1, 2, 3, 4];
 
+/// Five heaps of 600 grains at r = 0.9 and 0.97, 100 time units after the last one (`sweep heap`).
+const OF_600: Known = Known { mean: 0.460, error: 0.0119, heaps: 5.0 };
+const FLAT_OF_600: Known = Known { mean: 0.1425, error: 0.0040, heaps: 5.0 };
+/// Seven heaps of 1500 grains at r = 0.9.
+const OF_1500: Known = Known { mean: 0.610, error: 0.0083, heaps: 7.0 };
+/// Four heaps of 3000 grains at r = 0.9 (docs/sweeps.md).
+const OF_3000: Known = Known { mean: 0.681, error: 0.008, heaps: 4.0 };
+
 /// A heap at one time after the last grain.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
@@ -73,10 +81,31 @@ fn is_symmetric(heaps: &[Heap]) -> bool {
     super::trial::agrees(&differences, 0.0, 0.0)
 }
 
-fn mean_slope(heaps: &[Heap]) -> f64 {
-    let slopes: Vec<f64> = heaps.iter().map(|heap| heap.late.slope).collect();
-    println!("slopes {slopes:.3?}");
-    mean(&slopes).unwrap()
+fn slopes(heaps: &[Heap]) -> Vec<f64> {
+    heaps.iter().map(|heap| heap.late.slope).collect()
+}
+
+/// Mean slope of heaps that this program made before from other seeds, with its standard error: no truth, but what a change
+/// of the engine would shift. The error of these heaps is theirs; four of them do not tell their scatter well enough.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    mean: f64,
+    error: f64,
+    heaps: f64,
+}
+
+impl Known {
+    /// Whether the mean of `slopes` is this one within three standard errors of their difference.
+    fn is_met_by(self, slopes: &[f64]) -> bool {
+        let scatter = self.error * self.heaps.sqrt();
+        let error = self.error.hypot(scatter / (slopes.len() as f64).sqrt());
+        let mean = mean(slopes).expect("there are heaps");
+        println!(
+            "slopes {slopes:.3?}: {mean:.4} beside {self:?}, {:.1} errors apart",
+            (mean - self.mean) / error
+        );
+        (mean - self.mean).abs() <= 3.0 * error
+    }
 }
 
 fn slope_after(seed: u64, sets: &[&str]) -> f64 {
@@ -88,7 +117,7 @@ fn slope_after(seed: u64, sets: &[&str]) -> f64 {
 #[test]
 fn a_heap_stands_and_rests() {
     let heaps = heaps(&SEEDS, "1500");
-    assert!((0.40..=0.60).contains(&mean_slope(&heaps)));
+    assert!(OF_1500.is_met_by(&slopes(&heaps)));
     assert!(heaps.iter().all(rests));
     assert!(is_symmetric(&heaps));
 }
@@ -97,30 +126,24 @@ fn a_heap_stands_and_rests() {
 #[ignore = "full length: cargo test --release --test physics_scenarios -- --ignored"]
 fn a_heap_stands_and_rests_at_full_length() {
     let heaps = heaps(&SEEDS, "3000");
-    assert!((0.45..=0.68).contains(&mean_slope(&heaps)));
+    assert!(OF_3000.is_met_by(&slopes(&heaps)));
     assert!(heaps.iter().all(rests));
     assert!(is_symmetric(&heaps));
 }
 
-/// Slopes at r = 0.6, 0.9 and 0.97.
-fn slopes_by_restitution(count: &str) -> Vec<f64> {
-    let count = format!("source.count={count}");
-    let slopes = for_each(&["0.6", "0.9", "0.97"], |restitution| {
-        slope_after(1, &[&count, &format!("particles.restitution={restitution}")])
+/// From r = 0.9 on cells are as elastic as grains, and heaps grow flat. Below that the slope hardly depends on r
+/// (docs/sweeps.md), so nothing is asserted of it.
+#[test]
+fn nearly_elastic_grains_make_flat_heaps() {
+    let cases: Vec<(&str, u64)> = ["0.9", "0.97"].iter().flat_map(|r| SEEDS.map(|seed| (*r, seed))).collect();
+    let slopes = for_each(&cases, |&(restitution, seed)| {
+        slope_after(seed, &["source.count=600", &format!("particles.restitution={restitution}")])
     });
-    println!("slopes at r = 0.6, 0.9, 0.97: {slopes:.3?}");
-    slopes
-}
-
-#[test]
-fn more_elastic_grains_make_flatter_heaps() {
-    assert!(slopes_by_restitution("600").is_sorted_by(|steep, flat| steep > flat));
-}
-
-#[test]
-#[ignore = "full length: cargo test --release --test physics_scenarios -- --ignored"]
-fn more_elastic_grains_make_flatter_heaps_at_full_length() {
-    assert!(slopes_by_restitution("1500").is_sorted_by(|steep, flat| steep > flat));
+    let (steep, flat) = slopes.split_at(SEEDS.len());
+    assert!(OF_600.is_met_by(steep));
+    assert!(FLAT_OF_600.is_met_by(flat));
+    // The claim of the name, and that the test could fail: the two are far apart.
+    assert!(!OF_600.is_met_by(flat) && mean(flat) < mean(steep));
 }
 
 /// What somebody does to the grains from outside after each step.

@@ -96,7 +96,7 @@ fn heap_height(x: f64, peak: f64) -> f64 {
 pub(crate) fn heap() -> Sample {
     let scenario = "title = \"A heap poured on a rough plane\"\ndimension = 2\ngravity = [0.0, -1.0]\n[engine]\nkind = \"hsmc\"\ncell_size = 2.0\n\
         [domain]\nsize = [400.0, 160.0]\n[boundary]\nx = \"open\"\ny.lower = { wall = \"rough\" }\ny.upper = \"open\"\n\
-        [particles]\ncount = 0\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n[source]\ncount = 3000\nrate = 0.5\n\
+        [particles]\ncount = 0\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n[source]\ncount = 3000\nrate = 0.5\nposition = [200.0]\nwidth = 1.0\nheight = 10.0\n[run]\nrest = 400.0\n\
         [units]\nlength = \"d\"\nmass = \"m\"\ntime = \"√(d/g)\"\n";
     let names = [
         ("time", TIME),
@@ -165,7 +165,7 @@ fn heap_summary() -> Map<String, Value> {
 
 pub(crate) fn cooling() -> Sample {
     let scenario = "title = \"Homogeneous cooling <script>alert('no')</script>\"\ndimension = 2\n[engine]\nkind = \"hsmc\"\n[domain]\nsize = [177.2, 177.2]\n\
-        [boundary]\nx = \"periodic\"\ny = \"periodic\"\n[particles]\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.8\nvolume_fraction = 0.25\n";
+        [boundary]\nx = \"periodic\"\ny = \"periodic\"\n[particles]\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.8\nvolume_fraction = 0.25\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
@@ -225,7 +225,7 @@ pub(crate) fn cooling() -> Sample {
 pub(crate) fn shear() -> Sample {
     let scenario = "title = \"Bagnold shear flow\"\ndimension = 2\n[engine]\nkind = \"hsmc\"\ncell_size = 2.5\n[domain]\nsize = [40.0, 40.0]\n[boundary]\nx = \"periodic\"\n\
         y.lower = { wall = \"rough\", velocity = [-0.5, 0.0] }\ny.upper = { wall = \"rough\", velocity = [0.5, 0.0] }\n\
-        [particles]\nvolume_fraction = 0.1\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n";
+        [particles]\nvolume_fraction = 0.1\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
@@ -276,7 +276,7 @@ pub(crate) fn shear() -> Sample {
 
 pub(crate) fn pipe() -> Sample {
     let scenario = "title = \"Density waves in a pipe\"\ndimension = 2\ngravity = [0.0, -1.0]\n[engine]\nkind = \"hsmc\"\ncell_size = 4.0\n[domain]\nsize = [20.0, 400.0]\n[boundary]\n\
-        x = { lower = { wall = \"statistical\" }, upper = { wall = \"statistical\" } }\ny = \"periodic\"\n[particles]\nvolume_fraction = 0.38\nrestitution = 0.6\n";
+        x = { lower = { wall = \"statistical\" }, upper = { wall = \"statistical\" } }\ny = \"periodic\"\n[particles]\nvolume_fraction = 0.38\nrestitution = 0.6\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
@@ -358,7 +358,7 @@ fn pipe_summary() -> Map<String, Value> {
 
 /// Three dimensions, cut short.
 pub(crate) fn bed() -> Sample {
-    let scenario = "title = \"A bed of spheres\"\ndimension = 3\ngravity = [0.0, 0.0, -1.0]\n[engine]\nkind = \"cba\"\n[domain]\nsize = [20.0, 20.0, 40.0]\n[particles]\nrestitution = 0.95\n";
+    let scenario = "title = \"A bed of spheres\"\ndimension = 3\ngravity = [0.0, 0.0, -1.0]\n[engine]\nkind = \"cba\"\n[domain]\nsize = [20.0, 20.0, 40.0]\n[boundary]\nx = \"periodic\"\ny = \"periodic\"\nz.lower = { wall = \"smooth\" }\nz.upper = \"open\"\n[particles]\ncount = 3000\nrestitution = 0.95\n[run]\ntime = 100.0\n";
     let names = [("time", TIME), ("kinetic_energy", ENERGY), ("temperature", ENERGY)];
     let mut log = log(scenario, names.map(|(n, u)| column(n, u)).to_vec());
     log.walls = Some(Walls {

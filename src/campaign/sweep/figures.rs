@@ -4,9 +4,9 @@ use crate::engine::report::Totals;
 use crate::matter::gas::Gas;
 use crate::observe::measure::Snapshot;
 use crate::observe::measures;
-use crate::run::NUMBERS;
 use crate::scenario::did_you_mean;
 use crate::scenario::model::{AnyScenario, Scenario};
+use crate::simulation::figures::{is_of_every_run, numbers};
 use crate::space::Vector;
 
 /// The figures that the measures of `scenario` conclude with: what they say of an empty box.
@@ -23,15 +23,16 @@ fn concluded<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let snapshot = Snapshot { gas: &gas, totals: &totals };
     let measures = measures(&scenario.setting(), scenario.record.measures.as_deref());
     let figures = measures.iter().flat_map(|measure| measure.conclusion(&snapshot, 0.0).1);
-    figures.map(|figure| figure.name).filter(|name| !NUMBERS.contains(&name.as_str())).collect()
+    figures.map(|figure| figure.name).filter(|name| !is_of_every_run(name)).collect()
 }
 
 /// Says what is wrong where one of the figures `wished` is neither among the scenarios' `own` nor in every summary.
 pub(super) fn check(wished: &[String], own: &[String]) -> Result<(), String> {
-    let known = |name: &str| own.iter().any(|own| own == name) || NUMBERS.contains(&name);
+    let known = |name: &str| own.iter().any(|own| own == name) || numbers().any(|key| key == name);
     let Some(stranger) = wished.iter().find(|name| !known(name)) else { return Ok(()) };
-    let remedy = format!("this scenario has {}, and every run {}", own.join(", "), NUMBERS.join(", "));
-    let names = own.iter().map(String::as_str).chain(NUMBERS);
+    let every: Vec<&str> = numbers().collect();
+    let remedy = format!("this scenario has {}, and every run {}", own.join(", "), every.join(", "));
+    let names = own.iter().map(String::as_str).chain(every);
     let remedy = did_you_mean(stranger, names, &remedy);
     Err(format!("--figure '{stranger}': no figure of these runs has this name; {remedy}"))
 }

@@ -57,6 +57,7 @@ fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
     log.state_hashes.retain(|_| hashes.next().is_some_and(|&kept| kept));
     let (frames, fields) = (std::mem::take(&mut log.frames), std::mem::take(&mut log.fields));
     let (metadata, scenario, walls) = (log.metadata.clone(), log.scenario.clone(), log.walls.clone());
+    let species = std::mem::take(&mut log.species);
     let (state_hashes, cut_off) = (std::mem::take(&mut log.state_hashes), log.cut_off.clone());
     let tables = tables_of(log, selection);
     RunLog {
@@ -69,6 +70,7 @@ fn part_of(mut log: RunLog, selection: Selection) -> RunLog {
         frames,
         fields,
         walls,
+        species,
         cut_off,
     }
 }

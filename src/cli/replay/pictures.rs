@@ -9,6 +9,7 @@ use crate::export::target::Target;
 use crate::record::overview::overview;
 use crate::replay::film::{View, write_pictures};
 use crate::replay::{scenario_of, walls_of};
+use crate::scenario::kinds::Kinds;
 
 impl Work<'_> {
     /// Writes pictures of `width` pixels into `folder`.
@@ -23,7 +24,13 @@ impl Work<'_> {
         }
         let target = Target::folder(folder, self.force, &["png"], "--frames")?;
         prepare(None).map_err(|error| Failure::Input(error.to_string()))?;
-        let view = View { walls: Some(walls_of(&scenario)), diameter: scenario.diameter(), width };
+        let kinds = Kinds::of(&scenario, found.species);
+        if kinds.are_untold() {
+            eprintln!(
+                "note: grains differ in size, but no saved state says which is which: all are drawn alike"
+            );
+        }
+        let view = View { walls: Some(walls_of(&scenario)), kinds, width };
         let written = write_pictures(self.log, target.working(), self.selection, &view, &STOP)?;
         let pictures = written.map_err(|source| target.failed(source))?;
         if STOP.load(Relaxed) {

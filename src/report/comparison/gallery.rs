@@ -72,7 +72,7 @@ fn scene(comparison: &Comparison, columns: &[usize], rows: &[Row<'_>], place: us
     let same: Vec<usize> = (0..columns.len()).filter(is_same_box).collect();
     let all: Vec<&Frame> =
         rows.iter().flat_map(|row| same.iter().filter_map(|&column| row.frames[column])).collect();
-    Scene::of(&all, own.walls.as_ref(), own.diameter, false)
+    Scene::of(&all, own.walls.as_ref(), own.kinds.largest_diameter(), false)
 }
 
 impl Row<'_> {
@@ -87,8 +87,8 @@ impl Row<'_> {
                 html.push_str("<div class=\"nothing\">no recording</div>\n");
                 continue;
             };
-            let diameter = comparison.contestants[place].diameter;
-            let address = picture(frame, scene, fastest, diameter, width.round()).address();
+            let kinds = &comparison.contestants[place].kinds;
+            let address = picture(frame, scene, fastest, kinds, width.round()).address();
             let when = moment(comparison, frame.time);
             let what = format!("The grains of {} at {when}", label(comparison, place));
             let _ = writeln!(html, "<img src=\"{address}\" alt=\"{}\">", escape(&what));
