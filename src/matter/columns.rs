@@ -66,14 +66,6 @@ impl<V: Vector> Columns<V> {
         resize_optional(&mut self.species, labels.species.is_some(), n);
     }
 
-    /// Takes identities, spins and species over from `other`, which gets those held here
-    /// instead; both have the same shape.
-    pub fn take_labels(&mut self, other: &mut Self) {
-        std::mem::swap(&mut self.ids, &mut other.ids);
-        std::mem::swap(&mut self.spins, &mut other.spins);
-        std::mem::swap(&mut self.species, &mut other.species);
-    }
-
     /// Keeps the first `n` grains.
     pub fn truncate(&mut self, n: usize) {
         self.positions.truncate(n);

@@ -194,7 +194,12 @@ fn through_log<'s, V: Vector>(
     if format!("{read:?}") != format!("{saved:?}") {
         return Err("the state does not come back from the log as it was".to_owned());
     }
-    Simulation::resume(simulation.scenario(), read).map_err(|misfit| misfit.to_string())
+    let resumed = Simulation::resume(simulation.scenario(), read).map_err(|misfit| misfit.to_string())?;
+    let again = format!("{:?}", resumed.saved_state(7, 2));
+    if again != format!("{saved:?}") {
+        return Err(format!("the simulation that goes on has another state: {again}\nin place of {saved:?}"));
+    }
+    Ok(resumed)
 }
 
 /// The run into a folder leaves a log that holds the same run.

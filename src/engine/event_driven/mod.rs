@@ -63,11 +63,6 @@ impl<V: Vector> EventDriven<V> {
     pub fn calendar_usage(&self) -> Usage {
         self.world.as_ref().map_or_else(Usage::default, |world| world.calendar.usage())
     }
-
-    /// Whether partners are found by lists of neighbours at present, not in cells.
-    pub fn has_lists(&self) -> bool {
-        self.world.as_ref().is_some_and(|world| world.lists.is_some())
-    }
 }
 
 impl<V: Vector> World<V> {
