@@ -327,7 +327,7 @@ mod tests {
     use super::*;
 
     const GAS: &str = "dimension = 3\n[domain]\nsize = [20, 20.5, 30]\n[particles]\ncount = 100\n\
-                       diameter = 2\nmass = 3\nrestitution = 0.9\n[engine]\nkind = \"cba\"\n[run]\ntime = 1.0\n";
+                       diameter = 2\nmass = 3\nrestitution = 0.9\n[engine]\nkind = \"cba\"\n[initial]\nvelocities = { maxwell = 1.0 }\n[run]\ntime = 1.0\n";
 
     fn setup(text: &str) -> Setup {
         Setup::of(&RunLog { scenario: text.to_owned(), ..RunLog::default() }, &Map::new())

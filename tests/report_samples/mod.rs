@@ -165,7 +165,7 @@ fn heap_summary() -> Map<String, Value> {
 
 pub(crate) fn cooling() -> Sample {
     let scenario = "title = \"Homogeneous cooling <script>alert('no')</script>\"\ndimension = 2\n[engine]\nkind = \"hsmc\"\n[domain]\nsize = [177.2, 177.2]\n\
-        [boundary]\nx = \"periodic\"\ny = \"periodic\"\n[particles]\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.8\nvolume_fraction = 0.25\n[run]\ntime = 400.0\n";
+        [boundary]\nx = \"periodic\"\ny = \"periodic\"\n[particles]\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.8\nvolume_fraction = 0.25\n[initial]\nvelocities = { maxwell = 1.0 }\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
@@ -276,7 +276,7 @@ pub(crate) fn shear() -> Sample {
 
 pub(crate) fn pipe() -> Sample {
     let scenario = "title = \"Density waves in a pipe\"\ndimension = 2\ngravity = [0.0, -1.0]\n[engine]\nkind = \"hsmc\"\ncell_size = 4.0\n[domain]\nsize = [20.0, 400.0]\n[boundary]\n\
-        x = { lower = { wall = \"statistical\" }, upper = { wall = \"statistical\" } }\ny = \"periodic\"\n[particles]\nvolume_fraction = 0.38\nrestitution = 0.6\n[run]\ntime = 400.0\n";
+        x = { lower = { wall = \"statistical\", reversal_probability = 0.1 }, upper = { wall = \"statistical\", reversal_probability = 0.1 } }\ny = \"periodic\"\n[particles]\nvolume_fraction = 0.38\nrestitution = 0.6\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
