@@ -1,7 +1,12 @@
 //! Logs that cannot be verified or resumed, each with a message of its own.
 
 use std::fs;
+use std::path::Path;
 
+use glam::DVec2;
+use grainflow::record::reader::{last_state, read_log};
+use grainflow::record::state::SavedState;
+use grainflow::record::writer::{LogHeader, LogWriter};
 use grainflow::run::resume::Resumption;
 use grainflow::run::verify::Verdict;
 
@@ -142,4 +147,59 @@ fn what_may_not_change_is_refused() {
     assert!(trial.refused_to_resume(&older, &[]).contains("resume it with grainflow"));
     assert!(trial.refused_to_resume(&without_chunk(&trial.bytes, 5), &[]).contains("is not whole"));
     assert!(trial.refused_to_resume(b"", &[]).contains("is empty"));
+}
+
+/// The log at `path` with one state, that of `spoil`, and nothing else.
+fn spoilt_log(log: &Path, path: &Path, spoil: &dyn Fn(&mut SavedState<'static, DVec2>)) {
+    let read = read_log(log).unwrap();
+    let mut state = last_state::<DVec2>(log).unwrap().unwrap();
+    spoil(&mut state);
+    let header = LogHeader {
+        time_scale: read.metadata["time_scale"].parse().unwrap(),
+        metadata: read.metadata,
+        scenario: read.scenario,
+        columns: read.columns,
+        walls: read.walls,
+        ..LogHeader::default()
+    };
+    let mut writer = LogWriter::create(path, &header).unwrap();
+    writer.state(&state).unwrap();
+    writer.finish().unwrap();
+}
+
+type Spoil = &'static dyn Fn(&mut SavedState<'static, DVec2>);
+
+/// All checksums hold: what is wrong are the numbers.
+#[test]
+fn a_state_that_no_run_has_left_is_refused() {
+    let grains: [(&str, Spoil); 5] = [
+        ("is there twice", &|state| state.columns.to_mut().ids[0] = state.columns.ids[1]),
+        ("is outside the box", &|state| state.columns.to_mut().positions[3].x = -1e9),
+        ("moves at no finite speed", &|state| state.columns.to_mut().velocities[3].y = f64::NAN),
+        ("identities were given", &|state| state.next_id += 7),
+        ("its clock shows no time", &|state| state.time = f64::INFINITY),
+    ];
+    let events: [(&str, Spoil); 4] = [
+        ("", &|state| state.engine.words.clear()),
+        ("", &|state| state.engine.numbers.truncate(9)),
+        // Rows, identities and cells along the axes.
+        ("", &|state| state.engine.words[1] += 1),
+        ("", &|state| state.engine.words[2] = u32::MAX),
+    ];
+    for (engine, spoils) in
+        [("hsmc", &grains[..]), ("event-driven", &grains[..]), ("event-driven", &events[..])]
+    {
+        let place = Place::new();
+        let log = run_into(&place.path("run"), &gas(engine).with(&[])).folder.join("log.mcap");
+        let wrong = place.path("wrong.mcap");
+        spoilt_log(&log, &wrong, &|_| {});
+        assert!(Resumption::open(&wrong, &["run.collisions_per_particle=9".to_owned()]).is_ok(), "{engine}");
+        for (k, (words, spoil)) in spoils.iter().enumerate() {
+            spoilt_log(&log, &wrong, spoil);
+            let refused = Resumption::open(&wrong, &["run.collisions_per_particle=9".to_owned()]).err();
+            let said = refused.unwrap_or_else(|| panic!("{engine} {k}: {words}")).to_string();
+            assert!(said.contains("wrong.mcap") && said.contains(words), "{engine} {k}: {said}");
+            assert!(said.contains("copy the log again"), "{engine} {k}: {said}");
+        }
+    }
 }
