@@ -2,42 +2,24 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod place;
+
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use grainflow::record::reader::{last_state, read_log};
 use grainflow::scenario::builtin;
 use grainflow::simulation::figures::{KEYS, Kind};
+use place::{Place, code, error, text};
 use serde_json::{Map, Value};
 
 /// A gas that is done in no time.
 const QUICK: [&str; 6] =
     ["run", "cooling", "--set", "particles.count=300", "--set", "run.collisions_per_particle=3"];
 
-/// A place to work in, and the program started there.
-struct Place(tempfile::TempDir);
-
 impl Place {
-    fn new() -> Self {
-        Place(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("grainflow"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    fn grainflow(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
     /// The run of [`QUICK`] with more options.
     fn quick(&self, more: &[&str]) -> Output {
         self.grainflow(&[&QUICK, more].concat())
@@ -50,18 +32,6 @@ impl Place {
         assert_eq!(text(&output), "", "{arguments:?}");
         error(&output)
     }
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn error(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 fn summary(folder: &Path) -> Map<String, Value> {
@@ -154,7 +124,7 @@ fn an_old_run_stays_unless_a_new_one_is_complete() {
     // A failure under --force leaves the old run.
     let failing = place.quick(&["--out", "run", "--force", "--set", "engine.time_step.fixed=15"]);
     assert_eq!(code(&failing), 1);
-    assert_eq!(fs::read_dir(place.0.path()).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(place.path("")).unwrap().count(), 1);
     assert_eq!(summary(&place.path("run")), old);
     assert_eq!(code(&place.quick(&["--out", "run", "--force", "--seed", "2"])), 0);
     assert_eq!(summary(&place.path("run"))["seed"], 2);
@@ -175,7 +145,7 @@ fn a_full_disk_ends_the_run_at_once_and_leaves_a_log() {
     let output = Command::new("sh")
         .args(["-c", limited, env!("CARGO_BIN_EXE_grainflow"), "run", "cooling", "--quiet", "--out", "run"])
         .args(endless)
-        .current_dir(place.0.path())
+        .current_dir(place.path(""))
         .output()
         .unwrap();
     assert_eq!(code(&output), 1, "{}", error(&output));

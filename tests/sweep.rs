@@ -2,12 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod place;
+
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::time::{Duration, Instant, SystemTime};
 
+use place::Place;
 use serde_json::{Map, Value};
 
 /// A gas that is done in no time.
@@ -36,35 +38,23 @@ frames = 2
 
 const RESTITUTIONS: &str = "particles.restitution=[0.9, 0.8, 0.7]";
 
-/// A place to work in with the scenario `gas.toml`, and the program started there.
-struct Place(tempfile::TempDir);
-
 impl Place {
-    fn new() -> Self {
-        let place = Place(tempfile::tempdir().unwrap());
+    /// A place with the scenario `gas.toml`.
+    fn with_gas() -> Self {
+        let place = Place::new();
         fs::write(place.path("gas.toml"), GAS).unwrap();
         place
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("grainflow"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
     fn sweep(&self, more: &[&str]) -> Output {
-        self.command(&[&["sweep", "gas.toml", "--threads", "2"], more].concat()).output().unwrap()
+        self.grainflow(&[&["sweep", "gas.toml", "--threads", "2"], more].concat())
     }
 
     /// Asserts that a sweep ends with `code`; returns what was printed.
     fn ends(&self, more: &[&str], code: i32) -> (String, String) {
         let output = self.sweep(more);
-        let [text, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        assert_eq!(output.status.code(), Some(code), "{more:?}: {text}{error}");
+        let (text, error) = (place::text(&output), place::error(&output));
+        assert_eq!(place::code(&output), code, "{more:?}: {text}{error}");
         (text, error)
     }
 
@@ -117,7 +107,7 @@ fn cells(line: &str) -> Vec<String> {
 
 #[test]
 fn a_grid_has_a_row_for_every_run() {
-    let place = Place::new();
+    let place = Place::with_gas();
     let more = ["--vary", RESTITUTIONS, "--vary", "particles.count=[60, 80]", "--engines", "hsmc,dsmc"];
     let (text, _) = place.ends(&[&more[..], &["--replicas", "2", "--figure", "temperature"]].concat(), 0);
     let rows = place.rows("out/gas-sweep");
@@ -164,7 +154,7 @@ fn means_are_those_of_replicas(json: &Map<String, Value>, rows: &[BTreeMap<Strin
 
 #[test]
 fn mistakes_are_told_before_anything_is_written() {
-    let place = Place::new();
+    let place = Place::with_gas();
     let said = place.refused(&["--vary", "particles.count=[1,2] + particles.restitution=[0.5]"]);
     assert!(said.contains("--vary #1") && said.contains("`particles.count` has 2 values"), "{said}");
     let said = place.refused(&["--vary", RESTITUTIONS, "--vary", "particles.restituton=[1]"]);
@@ -182,7 +172,7 @@ fn mistakes_are_told_before_anything_is_written() {
 
 #[test]
 fn a_second_call_makes_only_what_is_missing() {
-    let place = Place::new();
+    let place = Place::with_gas();
     place.ends(&["--vary", RESTITUTIONS, "--quiet"], 0);
     let before = place.rows("out/gas-sweep");
     let log = |value: &str| format!("out/gas-sweep/restitution={value}/log.mcap");
@@ -201,7 +191,7 @@ fn a_second_call_makes_only_what_is_missing() {
 
 #[test]
 fn another_run_in_the_place_of_a_case_is_refused() {
-    let place = Place::new();
+    let place = Place::with_gas();
     place.ends(&["--vary", RESTITUTIONS, "--quiet"], 0);
     let table = fs::read_to_string(place.path("out/gas-sweep/sweep.csv")).unwrap();
     let other = ["--vary", RESTITUTIONS, "--set", "run.steps=41"];
@@ -225,7 +215,7 @@ fn another_run_in_the_place_of_a_case_is_refused() {
 
 #[test]
 fn runs_side_by_side_are_those_of_plain_runs() {
-    let place = Place::new();
+    let place = Place::with_gas();
     let walls = "boundary.y.lower.velocity[0]=[-0.2,-0.4] + boundary.y.upper.velocity[0]=[0.2,0.4]";
     for jobs in ["1", "2"] {
         let more = ["--vary", walls, "--replicas", "2", "--jobs", jobs, "--out", jobs, "--quiet"];
@@ -251,7 +241,7 @@ fn runs_side_by_side_are_those_of_plain_runs() {
 
 #[test]
 fn a_failing_case_does_not_stop_the_others() {
-    let place = Place::new();
+    let place = Place::with_gas();
     // A step so long that a grain would jump over a cell stops the run that has it.
     let more = ["--vary", "engine.time_step=[{ fixed = 0.01 }, { fixed = 1.0 }, { crossing = 0.2 }]"];
     let (text, said) = place.ends(&[&more[..], &["--quiet"]].concat(), 1);
@@ -268,7 +258,7 @@ fn a_failing_case_does_not_stop_the_others() {
 
 #[test]
 fn an_interrupt_leaves_a_table_and_the_next_call_goes_on() {
-    let place = Place::new();
+    let place = Place::with_gas();
     let slow = ["sweep", "gas.toml", "--vary", RESTITUTIONS, "--set", "run.steps=100000000", "--quiet"];
     let mut child = place.command(&slow).spawn().unwrap();
     let begun = Instant::now();
@@ -295,7 +285,7 @@ fn an_interrupt_leaves_a_table_and_the_next_call_goes_on() {
 
 #[test]
 fn the_page_needs_nothing_else() {
-    let place = Place::new();
+    let place = Place::with_gas();
     let walls = "boundary.y.lower.velocity[0]=[-0.1,-1,-10] + boundary.y.upper.velocity[0]=log(0.1, 10, 3)";
     let (text, _) =
         place.ends(&["--vary", walls, "--figure", "wall_shear_stress", "--set", "run.steps=4000"], 0);

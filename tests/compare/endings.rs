@@ -4,7 +4,8 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::place::{GAS, Place, code, error, is_judged, text};
+use super::place::{Place, code, error, text};
+use super::stage::{GAS, is_judged};
 
 /// So dissipative that exact dynamics collapses without a cure.
 const COLLAPSING: [&str; 4] = ["--set", "particles.restitution=0.1", "--set", "run.time=100"];

@@ -1,6 +1,7 @@
 //! Stored runs side by side.
 
-use super::place::{GAS, HEAP, Place, code, error, text};
+use super::place::{Place, code, error, text};
+use super::stage::{GAS, HEAP};
 
 #[test]
 fn logs_and_run_folders_are_compared_as_they_are() {

@@ -5,15 +5,18 @@
 mod chance;
 mod endings;
 mod logs;
+#[path = "../place/mod.rs"]
 mod place;
 mod refusals;
+mod stage;
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
-use place::{GAS, HEAP, Place, code, error, is_judged, text};
+use place::{Place, code, error, text};
+use stage::{GAS, HEAP, is_judged};
 
 /// Every file of the folder of a run.
 const RUN: [&str; 4] = ["log.mcap", "series.csv", "summary.json", "report.html"];
@@ -92,7 +95,7 @@ fn every_run_can_be_repeated_by_hand_from_anywhere() {
         assert_eq!(code(&output), 0, "{}", error(&output));
         let again = place.path(from).join("../again");
         let run = format!("a/b/{}", scenario.rsplit('/').next().unwrap().trim_end_matches(".toml"));
-        assert_eq!(place::summary(&again)["state_hash"], place.summary(&run)["state_hash"], "{scenario}");
+        assert_eq!(stage::summary(&again)["state_hash"], place.summary(&run)["state_hash"], "{scenario}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is wrong is told before anything runs.
 
-use super::place::{GAS, HEAP, Place, code, error};
+use super::place::{Place, code, error};
+use super::stage::{GAS, HEAP};
 use std::fs;
 
 #[test]

@@ -4,19 +4,13 @@
 
 mod export;
 mod golden;
+#[path = "../place/mod.rs"]
+mod place;
 mod replay;
 
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-
-/// A place to work in, and the program started there.
-struct Place(tempfile::TempDir);
+use place::{Place, code, error, text};
 
 impl Place {
-    fn new() -> Self {
-        Place(tempfile::tempdir().unwrap())
-    }
-
     /// A place with the run folder `run`: a small gas of 200 disks, 8 recordings and their states.
     fn with_run(sets: &[&str]) -> Self {
         let place = Place::new();
@@ -37,22 +31,8 @@ impl Place {
         place
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
     fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("grainflow"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    fn grainflow(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
     }
 
     /// Asserts that `arguments` are obeyed; returns what was printed.
@@ -82,16 +62,4 @@ impl Place {
         names.sort();
         names
     }
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn error(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }

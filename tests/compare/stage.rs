@@ -1,12 +1,13 @@
-//! A place to work in, the program started there, and scenarios that are done in no time.
+//! Scenarios that are done in no time, and what they leave.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
 
 use grainflow::record::contents::RunLog;
 use grainflow::record::reader::read_log;
 use serde_json::{Map, Value};
+
+use super::place::{Place, code, error, text};
 
 /// A hundred and fifty disks that cool.
 pub(crate) const GAS: &str = "title = \"A small gas\"
@@ -57,30 +58,14 @@ rest = 3.0
 frames = 20
 ";
 
-pub(crate) struct Place(tempfile::TempDir);
-
 impl Place {
     /// A new folder with these files.
     pub(crate) fn with(files: &[(&str, &str)]) -> Self {
-        let place = Place(tempfile::tempdir().unwrap());
+        let place = Place::new();
         for (name, text) in files {
             fs::write(place.path(name), text).unwrap();
         }
         place
-    }
-
-    pub(crate) fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("grainflow"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    pub(crate) fn grainflow(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
     }
 
     pub(crate) fn summary(&self, run: &str) -> Map<String, Value> {
@@ -103,18 +88,6 @@ impl Place {
 
 pub(crate) fn summary(run: &Path) -> Map<String, Value> {
     serde_json::from_str(&fs::read_to_string(run.join("summary.json")).unwrap()).unwrap()
-}
-
-pub(crate) fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-pub(crate) fn text(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-pub(crate) fn error(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 /// Whether a line of `said` judges `engine` by `reference`.
