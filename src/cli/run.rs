@@ -153,9 +153,14 @@ fn warn(scenario: &AnyScenario, folder: &Path) {
 /// Starts the threads and listens for Ctrl-C and SIGTERM: the first ends the run cleanly, a
 /// second ends the program at once. `timeout` and some shells send one signal twice in a row: that counts once.
 pub(super) fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Error>> {
-    let threads = threads.map_or(0, |wanted| usize::from(wanted).min(most_threads()));
+    let taken = threads_taken(threads).unwrap_or(0);
+    if let Some(wanted) = threads.filter(|&wanted| usize::from(wanted) > taken) {
+        eprintln!(
+            "note: --threads {wanted} is more than this machine can use; {taken} are taken, with the same result"
+        );
+    }
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
+        .num_threads(taken)
         .build_global()
         .map_err(|error| format!("cannot start the threads: {error}; ask for fewer with --threads"))?;
     ctrlc::set_handler(|| {
@@ -167,10 +172,11 @@ pub(super) fn prepare(threads: Option<u16>) -> Result<(), Box<dyn std::error::Er
     Ok(())
 }
 
-/// More threads than this only hinder each other; the results are the same bits for any number of them.
-fn most_threads() -> usize {
+/// As many threads as were asked for, but no more than what only makes them hinder each other: results are the same bits for
+/// any number of them.
+pub(super) fn threads_taken(wanted: Option<u16>) -> Option<usize> {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    (4 * cores).max(64)
+    wanted.map(|wanted| usize::from(wanted).min((4 * cores).max(64)))
 }
 
 fn usual_folder(scenario: &AnyScenario) -> PathBuf {

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::run::{STOP, prepare};
+use super::run::{STOP, prepare, threads_taken};
 use super::{Exit, complain};
 use crate::campaign::sweep::{Ended, Moment, Options, Outcome, Plan, SweepError, Wish, sweep as make};
 use crate::report::{FigureCurve, SweepFigure, SweepReport, with_error};
@@ -118,7 +118,7 @@ fn try_sweep(arguments: &SweepArguments) -> Result<Outcome, Exit> {
         out: &out,
         force: arguments.force,
         jobs: usize::from(arguments.jobs),
-        threads: arguments.threads.map(usize::from),
+        threads: threads_taken(arguments.threads),
     };
     let progress = Mutex::new(Progress::new(&plan, arguments.quiet));
     let tell =

@@ -102,25 +102,11 @@ impl<V: Vector> Measure<V> for Pressure {
     }
 
     fn memory(&self) -> Vec<f64> {
-        let previous = self.previous.map_or(Vec::new(), |row| row.to_vec());
-        // The first number says whether there was a recording.
-        [&[f64::from(u8::from(self.previous.is_some()))], &previous[..], self.samples.memory()].concat()
+        self.samples.memory_behind(self.previous)
     }
 
     fn recall(&mut self, memory: &[f64]) -> bool {
-        let (previous, samples) = match memory {
-            [0.0, samples @ ..] => (None, samples),
-            [1.0, rest @ ..] => match rest.split_first_chunk() {
-                Some((previous, samples)) => (Some(*previous), samples),
-                None => return false,
-            },
-            _ => return false,
-        };
-        let is_one = self.samples.recall(samples);
-        if is_one {
-            self.previous = previous;
-        }
-        is_one
+        self.samples.recall_behind(&mut self.previous, memory)
     }
 }
 

@@ -46,6 +46,33 @@ impl Samples {
         &self.flat
     }
 
+    /// The same behind a row that somebody saw last; the first number says whether there is one.
+    pub(crate) fn memory_behind<const N: usize>(&self, last: Option<[f64; N]>) -> Vec<f64> {
+        let row = last.map_or(Vec::new(), |row| row.to_vec());
+        [&[f64::from(u8::from(last.is_some()))], &row[..], self.memory()].concat()
+    }
+
+    /// Takes over what [`Samples::memory_behind`] gave, and tells whether it is that.
+    pub(crate) fn recall_behind<const N: usize>(
+        &mut self,
+        last: &mut Option<[f64; N]>,
+        memory: &[f64],
+    ) -> bool {
+        let (row, samples) = match memory {
+            [0.0, samples @ ..] => (None, samples),
+            [1.0, rest @ ..] => match rest.split_first_chunk() {
+                Some((row, samples)) => (Some(*row), samples),
+                None => return false,
+            },
+            _ => return false,
+        };
+        let is_one = self.recall(samples);
+        if is_one {
+            *last = row;
+        }
+        is_one
+    }
+
     /// Takes over what [`Samples::memory`] gave, and tells whether it is that: whole rows at rising times.
     pub(crate) fn recall(&mut self, memory: &[f64]) -> bool {
         let rows = memory.chunks_exact(self.width);
