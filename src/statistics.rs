@@ -14,6 +14,31 @@ pub struct Estimate {
     pub standard_error: Option<f64>,
 }
 
+/// What a series of values in time does as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trend {
+    /// It fluctuates about its mean.
+    Steady,
+    /// It rises.
+    Rising,
+    /// It falls.
+    Falling,
+    /// It changes as slowly as the series is long, without one direction.
+    Wandering,
+}
+
+impl Trend {
+    /// The word used in summaries and on pages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Trend::Steady => "steady",
+            Trend::Rising => "rising",
+            Trend::Falling => "falling",
+            Trend::Wandering => "wandering",
+        }
+    }
+}
+
 /// A straight line y = intercept + slope·x by least squares, every point with the same weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StraightLine {

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use grainflow::record::reader::{last_state, read_log};
 use grainflow::scenario::builtin;
-use grainflow::simulation::figures::{KEYS, Kind};
+use grainflow::simulation::figures::{ATTRIBUTES, KEYS, Kind};
 use place::{Place, code, error, text};
 use serde_json::{Map, Value};
 
@@ -49,7 +49,8 @@ fn agrees_with_its_table(summary: &Map<String, Value>) {
         }
     }
     for key in summary.keys().filter(|key| KEYS.iter().all(|(known, _)| known != key)) {
-        let name = key.trim_end_matches("_standard_error");
+        let endings = ATTRIBUTES.iter().find_map(|ending| key.strip_suffix(ending));
+        let name = endings.unwrap_or(key);
         assert!(summary.contains_key(&format!("{name}_standard_error")), "{key} is in no table");
     }
 }

@@ -3,6 +3,7 @@
 use crate::engine::report::Totals;
 use crate::matter::gas::Gas;
 use crate::space::Vector;
+use crate::statistics::Trend;
 
 /// The state of a run at a step end, as a measure sees it.
 #[derive(Clone, Copy, Debug)]
@@ -91,6 +92,10 @@ pub struct Figure {
     pub value: Option<f64>,
     /// Its standard error, where there is one.
     pub standard_error: Option<f64>,
+    /// Degrees of freedom of that error: Student's t with so many gives intervals; `None` without an error.
+    pub degrees_of_freedom: Option<f64>,
+    /// Whether its series is steady; `None` where the test does not apply.
+    pub trend: Option<Trend>,
 }
 
 /// One measure of a run.

@@ -133,6 +133,8 @@ pub(crate) fn figure(name: &str, estimate: Option<Estimate>) -> Figure {
         name: name.to_owned(),
         value: estimate.map(|e| e.value).filter(|x| x.is_finite()),
         standard_error: estimate.and_then(|e| e.standard_error).filter(|x| x.is_finite()),
+        degrees_of_freedom: None,
+        trend: None,
     }
 }
 

@@ -47,7 +47,7 @@ pub(super) fn of_the_physics<'a>(evidence: &Evidence<'a>) -> Vec<&'a str> {
     let names = evidence.summary.keys().map(String::as_str);
     let mut names: Vec<&str> = names
         .filter(|name| !keys::is_of_every_run(name) && !DETAILS.contains(name))
-        .filter(|name| !name.ends_with("_standard_error"))
+        .filter(|name| !keys::is_attribute(name))
         .filter(|name| evidence.figure(name).is_some() && has_meaning(evidence, name))
         .collect();
     names.sort_by_key(|name| rank(name));

@@ -9,9 +9,10 @@ use crate::matter::state_hash::state_hash;
 use crate::observe::measure::Figure;
 use crate::observe::moments;
 use crate::simulation::Simulation;
-use crate::simulation::figures::is_of_every_run;
+use crate::simulation::figures::{DEGREES_OF_FREEDOM, STANDARD_ERROR, STEADY, TREND, is_of_every_run};
 use crate::simulation::limits::EndReason;
 use crate::space::Vector;
+use crate::statistics::Trend;
 use crate::stopwatch::Stopwatch;
 
 /// How a run ended.
@@ -38,11 +39,21 @@ pub(super) fn summary<V: Vector>(
     summary.insert("state_hash".to_owned(), json!(state_hash(simulation.gas())));
     debug_assert!(summary.keys().all(|key| is_of_every_run(key)), "a key that its table lacks");
     for figure in figures.iter().filter(|figure| !is_of_every_run(&figure.name)) {
-        let error = format!("{}_standard_error", figure.name);
-        summary.insert(figure.name.clone(), json!(figure.value.filter(|value| value.is_finite())));
-        summary.insert(error, json!(figure.standard_error.filter(|value| value.is_finite())));
+        insert_figure(&mut summary, figure);
     }
     summary
+}
+
+/// A figure and what stands beside it ([`ATTRIBUTES`](crate::simulation::figures::ATTRIBUTES)).
+fn insert_figure(summary: &mut Map<String, Value>, figure: &Figure) {
+    let finite = |number: Option<f64>| json!(number.filter(|number| number.is_finite()));
+    let unsteady = figure.trend.filter(|trend| *trend != Trend::Steady);
+    let mut insert = |ending: &str, value: Value| summary.insert(figure.name.clone() + ending, value);
+    insert("", finite(figure.value));
+    insert(STANDARD_ERROR, finite(figure.standard_error));
+    insert(DEGREES_OF_FREEDOM, finite(figure.degrees_of_freedom));
+    insert(STEADY, json!(figure.trend.map(|trend| trend == Trend::Steady)));
+    insert(TREND, json!(unsteady.map(Trend::name)));
 }
 
 fn what_ran<V: Vector>(simulation: &Simulation<'_, V>) -> Map<String, Value> {

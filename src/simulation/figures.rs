@@ -59,6 +59,23 @@ pub const KEYS: [(&str, Kind); 42] = [
     ("peak_memory_bytes", Kind::Cost),
 ];
 
+/// What stands beside a figure in a summary, as endings of its name: standard error, degrees of freedom of that error,
+/// whether the figure is steady (true, false or null), and what it does where it is not (`rising`, `falling`, `wandering`).
+pub const ATTRIBUTES: [&str; 4] = [STANDARD_ERROR, DEGREES_OF_FREEDOM, STEADY, TREND];
+/// Ending of the key of a standard error.
+pub const STANDARD_ERROR: &str = "_standard_error";
+/// Ending of the key of the degrees of freedom of a standard error.
+pub const DEGREES_OF_FREEDOM: &str = "_degrees_of_freedom";
+/// Ending of the key that says whether a figure is steady.
+pub const STEADY: &str = "_steady";
+/// Ending of the key that says what an unsteady figure does.
+pub const TREND: &str = "_trend";
+
+/// Whether `key` is an attribute of a figure, not a figure itself.
+pub fn is_attribute(key: &str) -> bool {
+    ATTRIBUTES.iter().any(|ending| key.ends_with(ending))
+}
+
 /// Whether every summary has this key.
 pub fn is_of_every_run(name: &str) -> bool {
     KEYS.iter().any(|(key, _)| *key == name)

@@ -8,6 +8,7 @@ use super::runs::{Ended, Row};
 use crate::report::{Abscissa, FigureCurve, MeanPoint, SweepCase, SweepFigure, SweepReport};
 use crate::run::NUMERICS;
 use crate::scenario::model::AnyScenario;
+use crate::simulation::figures::is_attribute;
 use crate::statistics::{Estimate, average};
 
 /// A point of the grid with all its replicas.
@@ -207,7 +208,7 @@ fn point_json(plan: &Plan, point: &GridPoint<'_>) -> Value {
         plan.settings(point.case).map(|(path, value)| (path.to_owned(), typed(value))).collect();
     let mut figures = Map::new();
     for key in point.summaries.iter().flat_map(|summary| summary.keys()) {
-        if key.ends_with("_standard_error") || key == "seed" || figures.contains_key(key) {
+        if is_attribute(key) || key == "seed" || figures.contains_key(key) {
             continue;
         }
         if let Some((mean, runs)) = point.mean(key) {
