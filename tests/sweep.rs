@@ -3,14 +3,16 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod place;
+mod signal;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::time::{Duration, Instant, SystemTime};
 
 use place::Place;
 use serde_json::{Map, Value};
+use signal::send;
 
 /// A gas that is done in no time.
 const GAS: &str = "title = \"Gas <of tests>\"
@@ -267,8 +269,7 @@ fn an_interrupt_leaves_a_table_and_the_next_call_goes_on() {
         std::thread::sleep(Duration::from_millis(20));
     }
     std::thread::sleep(Duration::from_millis(200));
-    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(interrupt.success());
+    send("-INT", &child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(place.column("out/gas-sweep", "status"), ["interrupted", "not run", "not run"]);
     assert!(

@@ -4,6 +4,7 @@
 
 mod export;
 mod golden;
+mod mint;
 #[path = "../place/mod.rs"]
 mod place;
 mod replay;
