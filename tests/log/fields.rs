@@ -7,7 +7,7 @@ use grainflow::matter::columns::Columns;
 use grainflow::matter::gas::Gas;
 use grainflow::matter::grain::Grain;
 use grainflow::matter::grid::Grid;
-use grainflow::observe::field::{Field, Quantity, field};
+use grainflow::observe::field::{Quantity, field};
 use grainflow::record::reader::read_log;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
 use grainflow::space::Vector;
