@@ -136,10 +136,7 @@ fn one_who_has_seen_enough_may_close_the_pipe() {
     let program = assert_cmd::cargo::cargo_bin!("grainflow").display().to_string();
     // The last one begins when the pipe has been closed for long.
     let script = format!("for k in 1 2 3; do '{program}' replay run; echo $? >&2; done | head -c 10");
-    let output = std::process::Command::new("sh")
-        .args(["-c", &script])
-        .current_dir(place.path("."))
-        .output()
-        .unwrap();
+    let output =
+        std::process::Command::new("sh").args(["-c", &script]).current_dir(place.path(".")).output().unwrap();
     assert_eq!((error(&output).as_str(), text(&output).len()), ("0\n0\n0\n", 10));
 }
