@@ -316,6 +316,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             time: self.gas.clock.time(),
             compensation: self.gas.clock.compensation(),
             columns: Cow::Borrowed(self.gas.columns()),
+            largest_speed: Some(moments::largest_speed(self.gas.velocities())),
             next_id: self.gas.next_id(),
             engine: self.engine.state(),
             totals: self.totals.clone(),
