@@ -20,6 +20,9 @@ pub struct SavedState<'a, V: Vector> {
     pub compensation: f64,
     /// Grains in container order: those of a running gas on the way into a log, owned on the way out.
     pub columns: Cow<'a, Columns<V>>,
+    /// Largest speed of these grains [length/time], by which a state is known to be whole; `None` in logs that have none. The
+    /// speed that the length of the next step follows from is the engine's.
+    pub largest_speed: Option<f64>,
     /// The next identity to be given.
     pub next_id: u32,
     /// What the engine remembers.

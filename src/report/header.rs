@@ -12,6 +12,7 @@ use super::other_plots::capital;
 use super::reference::{Reference, references};
 use super::setup::Setup;
 use crate::observe::measure::Dimension;
+use crate::record::summary::failure;
 
 /// Title, sentence, figures.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {
@@ -23,6 +24,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
         escape(&setup.title),
         escape(&sentence(evidence)),
     );
+    html.push_str(&failure_words(evidence));
     if evidence.summary.get("interrupted") == Some(&Value::Bool(true)) {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
@@ -42,6 +44,20 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
     }
     html.push_str("</header>\n");
     html
+}
+
+/// That the run failed, when, why, and what to do; nothing where it did not.
+fn failure_words(evidence: &Evidence<'_>) -> String {
+    let Some(why) = failure(evidence.summary) else { return String::new() };
+    let when = evidence.figure("simulated_time").map_or_else(String::new, |time| {
+        format!(" after t = {} {}", number(time, 6), evidence.setup.named(2)).trim_end().to_owned()
+    });
+    format!(
+        "<p class=\"warning\"><b>This run failed{}.</b> {}<br>Everything on this page is of the run up to then; the log holds its \
+         last state before the failure.</p>\n",
+        escape(&when),
+        escape(why).replace('\n', "<br>"),
+    )
 }
 
 /// What ran, for how long, in one sentence.

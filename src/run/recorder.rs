@@ -156,20 +156,21 @@ impl Recorder {
         Ok(self.recorded)
     }
 
-    /// Ends the log of a run that could not go on from `place`, with the state there, unless `stop` turns true before that is
-    /// found. Returns whether it was.
-    pub(super) fn finish_after_failure<V: Vector>(
+    /// Ends the log of a run that could not go on from `place` as that of a run that ends there, unless `stop` turns true
+    /// before the run has come there once more. Returns what was recorded, and the run at that place.
+    pub(super) fn finish_after_failure<'s, V: Vector>(
         mut self,
-        scenario: &Scenario<V>,
+        scenario: &'s Scenario<V>,
         place: Place,
         stop: &AtomicBool,
-    ) -> Result<bool, LogError> {
+    ) -> Result<Option<(Recorded, Simulation<'s, V>)>, LogError> {
         self.writer.flush()?;
-        let log = self.writer.path().to_owned();
-        let saved = last_good(scenario, &log, place, stop, |state| self.writer.state(state));
-        let is_saved = saved.transpose()?.is_some();
-        self.writer.finish()?;
-        Ok(is_saved)
+        let Some(mut simulation) = last_good(scenario, self.writer.path(), place, stop) else {
+            self.writer.finish()?;
+            return Ok(None);
+        };
+        let recorded = self.finish(&mut simulation)?;
+        Ok(Some((recorded, simulation)))
     }
 
     fn record<V: Vector>(

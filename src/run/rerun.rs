@@ -101,6 +101,11 @@ impl<'s, V: Vector> Rerun<'s, V> {
         Ok(())
     }
 
+    /// Parts of the run that have begun.
+    pub(super) fn parts_begun(&self) -> usize {
+        self.part + 1
+    }
+
     fn now(&self) -> &Running<'s, V> {
         self.running.as_ref().expect("it begins with the first thing that is checked")
     }

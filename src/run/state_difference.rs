@@ -81,7 +81,7 @@ fn sums<V: Vector>(log: &SavedState<'_, V>, rerun: &SavedState<'_, V>) -> Option
     let numbers = [
         ("the time", log.time, rerun.time),
         ("what the clock holds back", log.compensation, rerun.compensation),
-        ("the largest speed", log.engine.largest_speed, rerun.engine.largest_speed),
+        ("the speed that sets the next step", log.engine.largest_speed, rerun.engine.largest_speed),
         ("the collision rate", log.engine.collision_rate, rerun.engine.collision_rate),
         ("the time of the last poured grain", log.last_poured, rerun.last_poured),
         ("the time until which the source is held up", log.held_until, rerun.held_until),

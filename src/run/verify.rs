@@ -76,6 +76,8 @@ pub struct Extent {
     pub events: u64,
     /// Up to when [time].
     pub time: f64,
+    /// Parts of the run that it reaches into, each with its own scenario.
+    pub parts: usize,
 }
 
 /// What comes out of a verification.
@@ -272,6 +274,7 @@ impl<V: Vector> Check<'_, V> {
         add(&mut self.extent);
         (self.extent.particle_steps, self.extent.events) = self.rerun.work();
         self.extent.time = self.rerun.gas().time();
+        self.extent.parts = self.rerun.parts_begun();
         Ok(())
     }
 

@@ -14,12 +14,13 @@ pub enum Kind {
 }
 
 /// Every key, in the order in which pages and messages name them. All other keys of a summary are figures of its scenario.
-pub const KEYS: [(&str, Kind); 42] = [
+pub const KEYS: [(&str, Kind); 43] = [
     ("scenario", Kind::Text),
     ("engine", Kind::Text),
     ("version", Kind::Text),
     ("end_reason", Kind::Text),
     ("interrupted", Kind::Text),
+    ("failure", Kind::Text),
     ("state_hash", Kind::Text),
     ("dimension", Kind::Number),
     ("particles_initial", Kind::Number),

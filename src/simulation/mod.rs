@@ -137,6 +137,12 @@ impl<'s, V: Vector> Simulation<'s, V> {
         Ok(simulation)
     }
 
+    /// This run in place of one that was resumed there, if anywhere, and that it has repeated.
+    #[must_use]
+    pub fn in_place_of(self, resumed: Option<Resumed>) -> Self {
+        Simulation { resumed, ..self }
+    }
+
     /// The same for a run of which limits or records have changed: samples are spread over its new length.
     pub fn resume_changed(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Result<Self, Misfit> {
         let mut simulation = Self::resume(scenario, saved)?;
@@ -316,6 +322,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             time: self.gas.clock.time(),
             compensation: self.gas.clock.compensation(),
             columns: Cow::Borrowed(self.gas.columns()),
+            largest_speed: Some(moments::largest_speed(self.gas.velocities())),
             next_id: self.gas.next_id(),
             engine: self.engine.state(),
             totals: self.totals.clone(),

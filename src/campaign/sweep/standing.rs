@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::read_origin;
-use crate::record::summary::summary_in;
+use crate::record::summary::{failure, summary_in};
 use crate::run::NUMERICS;
 use crate::scenario::model::AnyScenario;
 
@@ -61,7 +61,7 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
     if let Some(other) = other_program(of_summary("version").trim_matches('"'), &of_summary("numerics")) {
         return Standing::Foreign(other);
     }
-    if summary.get("interrupted") != Some(&Value::Bool(false)) {
+    if summary.get("interrupted") != Some(&Value::Bool(false)) || failure(&summary).is_some() {
         return Standing::Unfinished;
     }
     Standing::Finished(summary)
