@@ -7,6 +7,7 @@ mod changes;
 mod commands;
 mod crashes;
 mod damage;
+mod foreign;
 mod logs;
 mod refusals;
 #[path = "../small_scenarios/mod.rs"]
