@@ -192,6 +192,34 @@ fn a_second_call_makes_only_what_is_missing() {
 }
 
 #[test]
+fn a_finished_case_whose_log_was_cut_is_run_again_and_one_with_a_foreign_summary_is_refused() {
+    let place = Place::with_gas();
+    place.ends(&["--vary", RESTITUTIONS, "--quiet"], 0);
+    let log = |value: &str| place.path(&format!("out/gas-sweep/restitution={value}/log.mcap"));
+    let whole = fs::read(log("0.8")).unwrap();
+    // Soon after its scenario, half, and inside the index.
+    for length in [whole.len() / 2, whole.len() - 40, whole.len() - 1] {
+        fs::write(log("0.8"), &whole[..length]).unwrap();
+        let (text, said) = place.ends(&["--vary", RESTITUTIONS], 0);
+        assert!(text.contains("3 runs, 1 done, 2 kept"), "{length}: {text}");
+        assert!(said.contains("restitution=0.8: was finished and is run again"), "{length}: {said}");
+        assert!(said.contains(&format!("cut off after {length} bytes")), "{length}: {said}");
+        assert_eq!(fs::read(log("0.8")).unwrap(), whole, "{length}");
+    }
+    // Before its scenario is complete nothing tells whose log it is.
+    fs::write(log("0.8"), &whole[..400]).unwrap();
+    let (_, said) = place.ends(&["--vary", RESTITUTIONS], 2);
+    assert!(said.contains("cut off after 400 bytes") && said.contains("--force"), "{said}");
+    fs::write(log("0.8"), &whole).unwrap();
+    // A summary of another run beside the log of this one.
+    let summaries =
+        ["0.9", "0.8"].map(|value| place.path(&format!("out/gas-sweep/restitution={value}/summary.json")));
+    fs::copy(&summaries[0], &summaries[1]).unwrap();
+    let (_, said) = place.ends(&["--vary", RESTITUTIONS], 2);
+    assert!(said.contains("restitution=0.8 has a summary and a log that end in different states"), "{said}");
+}
+
+#[test]
 fn another_run_in_the_place_of_a_case_is_refused() {
     let place = Place::with_gas();
     place.ends(&["--vary", RESTITUTIONS, "--quiet"], 0);

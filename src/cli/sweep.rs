@@ -162,6 +162,9 @@ impl Progress {
     }
 
     fn tell(&mut self, plan: &Plan, moment: &Moment<'_>) {
+        if let Some(why) = moment.remade.filter(|_| !self.quiet) {
+            self.say(&format!("{}: was finished and is run again: {why}", plan.case(moment.case)));
+        }
         // Steps may be many and short.
         if moment.ended.is_none() && moment.progress < self.shares[moment.case] + LEAST_PROGRESS {
             return;

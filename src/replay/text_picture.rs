@@ -3,7 +3,7 @@
 //! With colours a character shows two fields above each other (`▀`), each in the colour of its volume fraction; without
 //! them eight dots (braille), each dark where there is a grain.
 
-use crate::record::contents::{Frame, Walls};
+use crate::record::contents::{Frame, Walls, within_rounding};
 use crate::report::field_colour;
 
 /// A part of the plane that is drawn: seen along z in 2D, along y in 3D.
@@ -53,7 +53,8 @@ impl Canvas {
         for position in &frame.positions {
             let share = |along: usize, axis: usize| {
                 let [lower, upper] = self.window[along];
-                (f64::from(position[axis]) - lower) / (upper - lower)
+                let place = within_rounding(f64::from(position[axis]), lower, upper);
+                (place - lower) / (upper - lower)
             };
             let [across, up] = [share(0, 0), share(1, self.up)];
             if (0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&up) {
@@ -150,6 +151,12 @@ mod tests {
         assert_eq!(canvas.draw(&low_left, 1.0), ["\u{2840}\u{2800}"]);
         let high_right = frame(&[[3.9, 3.9, 0.0], [9.0, 1.0, 0.0]]);
         assert_eq!(canvas.draw(&high_right, 1.0), ["\u{2800}\u{2808}"]);
+    }
+
+    #[test]
+    fn a_grain_on_a_wall_is_drawn_though_its_place_is_rounded_out() {
+        let canvas = Canvas::new(&walls(0.6, 0.6), 2, 1, false);
+        assert_eq!(canvas.draw(&frame(&[[0.6, 0.6, 0.0]]), 0.05), ["\u{2800}\u{2808}"]);
     }
 
     #[test]

@@ -192,7 +192,7 @@ impl Setup {
             known: Some(Known::of(any(scenario.clone()))),
             ..Self::nothing()
         };
-        setup.see_walls(&Walls::new(&scenario.boundary, V::ZERO, scenario.size));
+        setup.see_walls(&scenario.walls());
         setup
     }
 

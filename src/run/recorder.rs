@@ -14,14 +14,14 @@ use crate::matter::state_hash::state_hash;
 use crate::observe::field::{Field, field};
 use crate::observe::measure::{Column, Figure, Place, Profile};
 use crate::record::RECOVERED_KEY;
-use crate::record::contents::{EarlierPart, Walls};
+use crate::record::contents::EarlierPart;
 use crate::record::continuation::copy_before;
 use crate::record::error::LogError;
 use crate::record::frame::frame;
 use crate::record::history::History;
 use crate::record::time_scale::time_scale;
 use crate::record::writer::{LogHeader, LogWriter, Recording};
-use crate::scenario::model::{InitialPositions, Scenario, Spacing};
+use crate::scenario::model::{InitialPositions, Scenario};
 use crate::simulation::Simulation;
 use crate::space::Vector;
 
@@ -235,24 +235,17 @@ fn header<V: Vector>(scenario: &Scenario<V>, looks: &Looks) -> LogHeader {
         scenario: scenario.source_text.clone(),
         earlier: Vec::new(),
         columns: looks.columns.clone(),
-        walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
+        walls: Some(scenario.walls()),
         fields: (scenario.fields().collect(), V::DIMENSION),
         start: 0.0,
         time_scale: expected_time_scale(scenario),
     }
 }
 
-/// Ticks per time from what the scenario says of its length and of the pauses between recordings.
+/// Ticks per time from what can be told before the run of its length and of the pauses between recordings.
 fn expected_time_scale<V: Vector>(scenario: &Scenario<V>) -> u64 {
-    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count) / source.rate);
-    let duration = scenario.run.time.or(scenario.run.rest.map(|rest| rest + poured));
-    let interval = match scenario.record.spacing {
-        Spacing::Every(interval) => Some(interval),
-        Spacing::Frames(number) => duration.map(|duration| duration / f64::from(number.max(1))),
-        Spacing::LogFrames(_) => duration.map(|duration| duration * 1e-3),
-        Spacing::Ends => duration,
-    };
-    time_scale(duration.unwrap_or(f64::INFINITY), interval.unwrap_or(0.0))
+    let duration = scenario.expected_duration().unwrap_or(f64::INFINITY);
+    time_scale(duration, scenario.expected_pause().unwrap_or(0.0))
 }
 
 fn metadata<V: Vector>(scenario: &Scenario<V>) -> BTreeMap<String, String> {

@@ -20,6 +20,7 @@ pub mod model;
 mod overrides;
 mod pace;
 mod path;
+pub mod pauses;
 mod read;
 mod reader;
 mod schema;

@@ -26,7 +26,7 @@ use crate::space::Vector;
 use fit::Misfit;
 use limits::{EndReason, Limits};
 use pouring::{Pouring, PouringError, Room};
-use schedule::Spread;
+use schedule::{ROUNDING, Spread};
 
 /// How many looks a measure of spread cadence takes during a run.
 const SPREAD_SAMPLES: u32 = 400;
@@ -196,6 +196,16 @@ impl<'s, V: Vector> Simulation<'s, V> {
         laps.start("measures");
         self.take_samples();
         Ok(())
+    }
+
+    /// Whether the run has not ended but will at its next stop, which is no farther away than rounding: a multiple of an
+    /// interval may be one step of double precision before the limit that it should be. Never so of engines with steps.
+    pub fn ends_within_rounding(&self) -> bool {
+        if !self.is_event_driven() || self.end_reason().is_some() {
+            return false;
+        }
+        let end = self.limits.end(&self.gas, &self.totals, self.pouring.as_ref()).time;
+        end.is_finite() && end - self.gas.time() <= ROUNDING * end
     }
 
     /// Where number `done` of `spread` is due; nowhere for engines with steps, which cannot stop there.

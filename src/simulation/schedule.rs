@@ -27,6 +27,10 @@ pub enum Due {
     Never,
 }
 
+/// What rounding may take from a time, as a share of it: a multiple of an interval is rounded twice, once as the interval
+/// and once as the product, and so is a sum of steps.
+pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Decades of progress that a logarithmic spread covers.
 const DECADES: f64 = 3.0;
 

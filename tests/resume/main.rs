@@ -8,6 +8,7 @@ mod commands;
 mod crashes;
 mod damage;
 mod failures;
+mod foreign;
 mod logs;
 mod refusals;
 #[path = "../small_scenarios/mod.rs"]
