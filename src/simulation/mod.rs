@@ -365,3 +365,5 @@ fn equilibrate<V: Vector>(
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wall_impulse_tests;
