@@ -127,8 +127,9 @@ fn unit(entries: &[Entry], name: &str, dimension: usize) -> Dimension {
 /// The unit of a figure in so many dimensions: a force per area is one per length in two.
 pub(crate) fn unit_of(name: &str, dimension: usize) -> Dimension {
     let [mass, length, time] = match name {
-        "temperature" | "granular_temperature" | "rotational_energy" | "kinetic_energy_final" => [1, 2, -2],
+        "temperature" | "rotational_energy" | "kinetic_energy_final" => [1, 2, -2],
         "pressure" => [1, if dimension == 3 { -1 } else { 0 }, -2],
+        _ if name.starts_with("granular_temperature") => [1, 2, -2],
         _ if name.starts_with("wall_shear_stress") || name.starts_with("wall_normal_stress") => {
             [1, if dimension == 3 { -1 } else { 0 }, -2]
         }

@@ -26,10 +26,12 @@ pub mod wall_stress;
 
 mod density_waves;
 mod last_look;
+pub(crate) mod local_flow;
 pub(crate) mod layout;
 mod packing;
 mod samples;
 mod slices;
+mod species_temperature;
 #[cfg(test)]
 mod testing;
 mod transform;

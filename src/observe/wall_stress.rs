@@ -168,10 +168,18 @@ impl<V: Vector> Measure<V> for WallStress<V> {
     }
 
     fn memory(&self) -> Vec<f64> {
-        [&self.previous, self.samples.memory()].concat()
+        // Older memories begin with a time, which is never negative.
+        let mut memory = vec![-(self.stresses.len() as f64)];
+        memory.extend(&self.previous);
+        memory.extend(self.samples.memory());
+        memory
     }
 
     fn recall(&mut self, memory: &[f64]) -> bool {
+        let [stresses, memory @ ..] = memory else { return false };
+        if *stresses != -(self.stresses.len() as f64) {
+            return false;
+        }
         let Some((previous, samples)) = memory.split_at_checked(self.previous.len()) else { return false };
         let is_one = self.samples.recall(samples);
         if is_one {

@@ -12,7 +12,7 @@ use crate::statistics::block_average;
 const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
 
 /// Known figures in the order of their weight, and whether each is a mean over the second half of the run.
-const KNOWN: [(&str, bool); 19] = [
+const KNOWN: [(&str, bool); 20] = [
     ("heap_slope", false),
     ("heap_height", false),
     ("velocity_profile_slope", true),
@@ -32,6 +32,7 @@ const KNOWN: [(&str, bool); 19] = [
     ("mean_free_path", true),
     ("impact_c", true),
     ("rotational_energy", false),
+    ("granular_temperature", false),
 ];
 
 /// A drift shows in no fewer recordings than these in the second half.
