@@ -216,8 +216,7 @@ mod tests {
     fn species_are_told_apart() {
         let mut bed = setting_of(DVec2::splat(20.0), [10, 10, 1]);
         bed.setting.species = 2;
-        let mut gas =
-            bed.gas(0.0, random_positions(1, 2000, DVec2::splat(20.0)), random_velocities(2, 2000));
+        let mut gas = bed.gas(0.0, random_positions(1, 2000, DVec2::splat(20.0)), random_velocities(2, 2000));
         let heavy = Grain { diameter: 1.0, mass: 4.0 };
         gas.species = vec![Grain { diameter: 1.0, mass: 1.0 }, heavy];
         gas.parts_mut().2.species = Some((0..2000).map(|row| (row % 2) as u8).collect());

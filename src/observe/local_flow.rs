@@ -174,9 +174,8 @@ impl<V: Vector> Flow<V> {
     /// Adds the coordinate along `axis`, made orthonormal to those before (Gram and Schmidt), to the fit; `moments` are
     /// Σ m x_a x, `products` Σ m x_a v, both about the centre of mass.
     fn add_gradient(&mut self, axis: usize, moments: &[V; 3], products: &[V; 3]) {
-        let product = |one: V, other: V| -> f64 {
-            (0..V::DIMENSION).map(|a| one[a] * moments[a].dot(other)).sum()
-        };
+        let product =
+            |one: V, other: V| -> f64 { (0..V::DIMENSION).map(|a| one[a] * moments[a].dot(other)).sum() };
         let coordinate = V::along(axis, 1.0);
         let mut rest = coordinate;
         for one in &self.basis[..self.rank] {
@@ -194,11 +193,6 @@ impl<V: Vector> Flow<V> {
         for a in 0..V::DIMENSION {
             self.squares[a] -= slope[a] * slope[a];
         }
-    }
-
-    /// Velocity of the centre of mass [length/time].
-    pub(crate) fn velocity(&self) -> V {
-        self.velocity
     }
 
     /// Temperature about the flow [mass·length²/time²].
@@ -237,7 +231,8 @@ impl<V: Vector> Flow<V> {
     /// Maxwell gas, (v − u)/√(1 − h) with h = m Σ φ_k².
     #[inline]
     pub(crate) fn peculiar(&self, mass: f64, position: V, velocity: V) -> V {
-        let squares: f64 = self.coordinates(position).into_iter().map(|coordinate| coordinate * coordinate).sum();
+        let squares: f64 =
+            self.coordinates(position).into_iter().map(|coordinate| coordinate * coordinate).sum();
         let free = 1.0 - mass * (1.0 / self.mass + squares);
         let rest = self.rest(position, velocity);
         if free > DEPENDENT { rest * (1.0 / free.sqrt()) } else { V::ZERO }

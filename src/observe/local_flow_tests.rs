@@ -48,7 +48,8 @@ fn mean_temperature<V: Vector>(size: V, grains: usize, is_mixture: bool, motion:
 fn check<V: Vector>(size: V) {
     let none = [V::ZERO; 3];
     let wind = V::from_fn(|axis| [40.0, -7.0, 3.0][axis]);
-    let gradient = [0, 1, 2].map(|axis| V::from_fn(|a| [[0.3, -0.4, 0.2], [0.9, 0.1, -0.3], [0.5, 0.2, -0.4]][axis][a]));
+    let gradient =
+        [0, 1, 2].map(|axis| V::from_fn(|a| [[0.3, -0.4, 0.2], [0.9, 0.1, -0.3], [0.5, 0.2, -0.4]][axis][a]));
     for is_mixture in [false, true] {
         let at_rest = mean_temperature(size, 1500, is_mixture, &Motion { wind: V::ZERO, gradient: none });
         let (value, error) = at_rest;
@@ -98,17 +99,21 @@ fn peculiar_velocities_of_a_mixture_have_the_variance_of_their_species() {
         let motion = Motion { wind: DVec2::ONE, gradient: [DVec2::Y, DVec2::X * 0.7, DVec2::ZERO] };
         let gas = gas(900 + 2 * seed, 400, DVec2::splat(20.0), true, &motion);
         let flow = LocalFlow::of(&gas, 10.0);
-        for bin in flow.each_bin(&gas, |flow, rows| {
-            let mut sums = [[0.0, 0.0]; 2];
-            for row in rows {
-                let grain = gas.grain_at(row);
-                let c = flow.peculiar(grain.mass, gas.positions()[row], gas.velocities()[row]);
-                let sum = &mut sums[usize::from(grain.mass > 1.0)];
-                sum[0] += grain.mass * c.length_squared() / 2.0;
-                sum[1] += 1.0;
-            }
-            sums
-        }).into_iter().flatten() {
+        for bin in flow
+            .each_bin(&gas, |flow, rows| {
+                let mut sums = [[0.0, 0.0]; 2];
+                for row in rows {
+                    let grain = gas.grain_at(row);
+                    let c = flow.peculiar(grain.mass, gas.positions()[row], gas.velocities()[row]);
+                    let sum = &mut sums[usize::from(grain.mass > 1.0)];
+                    sum[0] += grain.mass * c.length_squared() / 2.0;
+                    sum[1] += 1.0;
+                }
+                sums
+            })
+            .into_iter()
+            .flatten()
+        {
             for (sum, part) in squares.iter_mut().zip(bin) {
                 sum[0] += part[0];
                 sum[1] += part[1];

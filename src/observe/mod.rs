@@ -26,8 +26,8 @@ pub mod wall_stress;
 
 mod density_waves;
 mod last_look;
-pub(crate) mod local_flow;
 pub(crate) mod layout;
+pub(crate) mod local_flow;
 mod packing;
 mod samples;
 mod slices;

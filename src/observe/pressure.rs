@@ -185,7 +185,9 @@ mod tests {
             };
             (0..40).map(state).collect()
         };
-        let of = |flow, name| figure_of(&mut Pressure::new(&bed.setting).unwrap(), &states(flow), 0.0, name).0.unwrap();
+        let of = |flow, name| {
+            figure_of(&mut Pressure::new(&bed.setting).unwrap(), &states(flow), 0.0, name).0.unwrap()
+        };
         // n T (1 + 1/D), with 1 ± 0.01 of the temperature.
         for flow in [0.0, 5.0] {
             let (pressure, factor) = (of(flow, "pressure"), of(flow, "compressibility_factor"));

@@ -161,9 +161,10 @@ impl<V: Vector> Measure<V> for WallStress<V> {
     fn conclusion(&self, snapshot: &Snapshot<'_, V>, from: f64) -> (Vec<Profile>, Vec<Figure>) {
         let samples = self.samples.with(snapshot.gas.time(), &self.accumulated(snapshot));
         let rows = samples.since(from);
-        let figures = self.stresses.iter().enumerate().map(|(k, one)| {
-            figure(&one.name, one.along.and_then(|_| steady_rate(&rows, |row| row[k + 1])))
-        });
+        let figures =
+            self.stresses.iter().enumerate().map(|(k, one)| {
+                figure(&one.name, one.along.and_then(|_| steady_rate(&rows, |row| row[k + 1])))
+            });
         (Vec::new(), figures.collect())
     }
 

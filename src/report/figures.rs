@@ -98,9 +98,8 @@ pub(super) fn is_floor_untouched(setup: &Setup) -> bool {
 /// Whether a constant force presses grains onto one of two opposite walls.
 fn presses_one_of_two_walls(evidence: &Evidence<'_>) -> bool {
     let pulls = |axis: usize| evidence.setup.gravity.get(axis).is_some_and(|g| *g != 0.0);
-    let is_wall = |axis: char, side: &str| {
-        evidence.summary.contains_key(&format!("wall_normal_stress_{axis}_{side}"))
-    };
+    let is_wall =
+        |axis: char, side: &str| evidence.summary.contains_key(&format!("wall_normal_stress_{axis}_{side}"));
     let axes = ['x', 'y', 'z'].into_iter().enumerate();
     axes.filter(|(axis, _)| pulls(*axis)).any(|(_, axis)| is_wall(axis, "lower") && is_wall(axis, "upper"))
 }

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use super::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use super::last_good::last_good;
 use super::looks::Looks;
 use super::shown::Shown;
 use super::timetable::Timetable;
+use super::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
 use crate::observe::field::{Field, field};

@@ -48,9 +48,16 @@ impl<V: Vector> Balance<V> {
 
 /// A box with these walls in so many dimensions, under gravity that points at no wall squarely.
 fn text(engine: EngineKind, dimension: usize, walls: &str, restitution: f64) -> String {
-    let side = if dimension == 2 { "" } else { "z.lower = { wall = \"rough\" }\nz.upper = { wall = \"smooth\", restitution = 0.5 }\n" };
-    let (size, gravity) =
-        if dimension == 2 { ("[12.0, 16.0]", "[0.2, -1.0]") } else { ("[8.0, 12.0, 8.0]", "[0.2, -1.0, 0.1]") };
+    let side = if dimension == 2 {
+        ""
+    } else {
+        "z.lower = { wall = \"rough\" }\nz.upper = { wall = \"smooth\", restitution = 0.5 }\n"
+    };
+    let (size, gravity) = if dimension == 2 {
+        ("[12.0, 16.0]", "[0.2, -1.0]")
+    } else {
+        ("[8.0, 12.0, 8.0]", "[0.2, -1.0, 0.1]")
+    };
     let cure = if engine == EngineKind::EventDriven && restitution < 1.0 {
         "event_driven.elastic_below = 0.1\n"
     } else {
@@ -67,7 +74,9 @@ fn text(engine: EngineKind, dimension: usize, walls: &str, restitution: f64) -> 
 }
 
 fn balance(text: &str) -> (f64, u64) {
-    match crate::scenario::parse("balance", text, &Default::default()).unwrap_or_else(|error| panic!("{error}\n{text}")) {
+    match crate::scenario::parse("balance", text, &Default::default())
+        .unwrap_or_else(|error| panic!("{error}\n{text}"))
+    {
         AnyScenario::Two(scenario) => {
             let balance = run_to_end(&scenario);
             (balance.missing(), balance.hits)
@@ -95,7 +104,8 @@ fn walls_and_gravity_account_for_all_momentum() {
     for engine in [EngineKind::Dsmc, EngineKind::Cba, EngineKind::EventDriven] {
         for dimension in [2, 3] {
             for (walls, restitution) in WALLS.into_iter().zip([0.8, 0.9, 1.0, 0.9]) {
-                let walls = if dimension == 2 { walls.to_owned() } else { walls.replace(", 0.0]", ", 0.0, 0.0]") };
+                let walls =
+                    if dimension == 2 { walls.to_owned() } else { walls.replace(", 0.0]", ", 0.0, 0.0]") };
                 let text = text(engine, dimension, &walls, restitution);
                 let (missing, hits) = balance(&text);
                 assert!(missing <= ROUNDING && hits > 50, "{missing} after {hits} hits of\n{text}");
@@ -112,7 +122,8 @@ fn carried(engine: EngineKind) -> f64 {
          [particles]\ncount = 1\nrestitution = 0.5\n[run]\ntime = 200.0\n",
         engine.name()
     );
-    let AnyScenario::Two(scenario) = crate::scenario::parse("rest", &text, &Default::default()).unwrap() else {
+    let AnyScenario::Two(scenario) = crate::scenario::parse("rest", &text, &Default::default()).unwrap()
+    else {
         panic!("the scenario is flat")
     };
     let balance = run_to_end(&scenario);
