@@ -156,9 +156,9 @@ fn few_grains_say_nothing_and_grains_in_a_row_have_a_gradient_along_it_alone() {
     };
     // Two points make a line.
     assert_eq!(temperature(&row(&[1.0, 4.0])), None);
-    // About the line through 1, 2, 3: (1 + 4 + 1)/6 over D (3 − 1 − 1).
+    // About the line through 4/3, 7/3, 10/3: (1 + 4 + 1)/9 over D (3 − 1 − 1).
     let bent = temperature(&row(&[1.0, 3.0, 3.0])).unwrap();
-    assert!((bent - (2.0 / 3.0 * 0.25)).abs() < 1e-12, "{bent}");
+    assert!((bent - 1.0 / 3.0).abs() < 1e-12, "{bent}");
 }
 
 #[test]

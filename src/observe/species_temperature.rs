@@ -68,13 +68,15 @@ impl Equations {
     fn solve(mut self) -> Vec<f64> {
         let species = self.squares.len();
         let scale: Vec<f64> = (0..species).map(|s| self.factors[s][s].abs()).collect();
-        let mut is_told = vec![true; species];
         // The factors of a species itself outweigh those of others, so that the diagonal will do.
         for s in 0..species {
             let pivot = self.factors[s][s];
-            if scale[s] == 0.0 || pivot <= SINGULAR * scale[s] {
-                is_told[s] = false;
+            if scale[s] == 0.0 {
                 continue;
+            }
+            if pivot <= SINGULAR * scale[s] {
+                // Too few grains to tell one species from another.
+                return vec![f64::NAN; species];
             }
             for t in (0..species).filter(|&t| t != s) {
                 let share = self.factors[t][s] / pivot;
@@ -84,9 +86,8 @@ impl Equations {
                 self.squares[t] -= share * self.squares[s];
             }
         }
-        (0..species)
-            .map(|s| if is_told[s] { self.squares[s] / self.factors[s][s] } else { f64::NAN })
-            .collect()
+        // Zero over zero, NaN, of a species that has no grains.
+        (0..species).map(|s| self.squares[s] / self.factors[s][s]).collect()
     }
 }
 

@@ -145,17 +145,21 @@ mod tests {
     #[test]
     fn a_mixture_moves_with_its_centre_of_mass_and_shows_its_species() {
         let bed = setting_of(DVec3::new(2.0, 2.0, 6.0), [1, 1, 3]);
-        let positions = [0.5, 1.5, 0.5, 1.5].map(DVec3::splat).to_vec();
-        let velocities = vec![DVec3::X * 4.0, DVec3::X * 4.0, DVec3::ZERO, DVec3::ZERO];
+        let positions = [0.5, 1.5, 0.5, 1.5].map(DVec3::splat).repeat(2);
+        let velocities = [vec![DVec3::X * 4.0; 4], vec![DVec3::ZERO; 4]].concat();
         let mut gas = bed.gas(0.0, positions, velocities);
         gas.species = vec![Grain { diameter: 1.0, mass: 1.0 }, Grain { diameter: 1.0, mass: 3.0 }];
-        gas.parts_mut().2.species = Some(vec![0, 0, 1, 1]);
+        gas.parts_mut().2.species = Some(vec![0, 0, 0, 0, 1, 1, 1, 1]);
         let values = profile(&bed.setting, &gas);
         assert_eq!(values[1][0], 1.0);
-        // 2 (9 + 3)/(3 · 2).
-        assert!((values[4][0] - 4.0).abs() < 1e-12, "{}", values[4][0]);
+        // 4 (9 + 3)/(3 · 6).
+        assert!((values[4][0] - 8.0 / 3.0).abs() < 1e-12, "{}", values[4][0]);
         assert_eq!(values.len(), 8);
-        assert!(values[6][0] > values[7][0], "{values:?}");
+        // Of 25/8 T₁ + 3/8 T₂ = 12 and 3/8 T₁ + 17/8 T₂ = 4.
+        assert!(
+            (values[6][0] - 24.0 / 6.5).abs() < 1e-12 && (values[7][0] - 8.0 / 6.5).abs() < 1e-12,
+            "{values:?}"
+        );
     }
 
     #[test]

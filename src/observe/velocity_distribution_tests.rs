@@ -105,8 +105,8 @@ fn a_flow_is_not_in_the_moments() {
     let mut velocities: Vec<DVec2> = random_velocities(3, 100_000);
     velocities.iter_mut().step_by(2).for_each(|v| *v *= 0.5);
     let a2 = look(&sheared(spread(velocities)), 0)[4];
-    // 2 (1 + 1/16)/(1 + 1/4)² − 1 = 0.36.
-    assert!((a2 / 0.36 - 0.97).abs() < 0.04, "{a2}");
+    // 2 (1 + 1/16)/(1 + 1/4)² − 1 = 0.36, its error is 0.006: three of them beside what is left out.
+    assert!((a2 / 0.36 - 0.97).abs() < 0.055, "{a2}");
 }
 
 #[test]
