@@ -128,7 +128,9 @@ fn unit(entries: &[Entry], name: &str, dimension: usize) -> Dimension {
 pub(crate) fn unit_of(name: &str, dimension: usize) -> Dimension {
     let [mass, length, time] = match name {
         "temperature" | "rotational_energy" | "kinetic_energy_final" => [1, 2, -2],
-        "wall_shear_stress" | "wall_normal_stress" | "pressure" => {
+        "pressure" => [1, if dimension == 3 { -1 } else { 0 }, -2],
+        _ if name.starts_with("granular_temperature") => [1, 2, -2],
+        _ if name.starts_with("wall_shear_stress") || name.starts_with("wall_normal_stress") => {
             [1, if dimension == 3 { -1 } else { 0 }, -2]
         }
         "flow_velocity" => [0, 1, -1],

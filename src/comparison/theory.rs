@@ -131,7 +131,9 @@ impl<'a, V: Vector> Theory<'a, V> {
         let energies = 0.5 * V::DIMENSION as f64 * f64::from(self.scenario.count);
         let name = if is_in_time { "Haff’s law" } else { "homogeneous cooling" };
         match column {
-            "temperature" => curve(name, self.cooling_source(&law, is_in_time), &temperature),
+            "temperature" | "granular_temperature" => {
+                curve(name, self.cooling_source(&law, is_in_time), &temperature)
+            }
             "kinetic_energy" => {
                 curve(name, self.cooling_source(&law, is_in_time), &|place| energies * temperature(place))
             }

@@ -12,7 +12,7 @@ use crate::statistics::block_average;
 const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
 
 /// Known figures in the order of their weight, and whether each is a mean over the second half of the run.
-const KNOWN: [(&str, bool); 19] = [
+const KNOWN: [(&str, bool); 20] = [
     ("heap_slope", false),
     ("heap_height", false),
     ("velocity_profile_slope", true),
@@ -32,6 +32,7 @@ const KNOWN: [(&str, bool); 19] = [
     ("mean_free_path", true),
     ("impact_c", true),
     ("rotational_energy", false),
+    ("granular_temperature", false),
 ];
 
 /// A drift shows in no fewer recordings than these in the second half.
@@ -76,7 +77,9 @@ pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
     match name {
         // The mean of something that falls by decades is a number without a use.
         "pressure" | "collision_frequency" | "mean_free_time" => is_temperature_steady(evidence),
-        "wall_normal_stress" => !is_floor_untouched(evidence.setup),
+        _ if is_stress_on_untouched_floor(evidence.setup, name) => false,
+        // The mean over a floor that carries the weight and a ceiling that does not is about half of it.
+        "wall_normal_stress" => !presses_one_of_two_walls(evidence),
         _ => true,
     }
 }
@@ -90,6 +93,27 @@ pub(super) fn is_steady(evidence: &Evidence<'_>, name: &str) -> bool {
 /// Whether full cells keep grains away from the floor that carries them.
 pub(super) fn is_floor_untouched(setup: &Setup) -> bool {
     setup.engine == "hsmc" && setup.has_floor()
+}
+
+/// Whether a constant force presses grains onto one of two opposite walls.
+fn presses_one_of_two_walls(evidence: &Evidence<'_>) -> bool {
+    let pulls = |axis: usize| evidence.setup.gravity.get(axis).is_some_and(|g| *g != 0.0);
+    let is_wall =
+        |axis: char, side: &str| evidence.summary.contains_key(&format!("wall_normal_stress_{axis}_{side}"));
+    let axes = ['x', 'y', 'z'].into_iter().enumerate();
+    axes.filter(|(axis, _)| pulls(*axis)).any(|(_, axis)| is_wall(axis, "lower") && is_wall(axis, "upper"))
+}
+
+/// Whether this is the normal stress on the floor.
+fn is_stress_on_the_floor(setup: &Setup, name: &str) -> bool {
+    let Some(axis) = setup.gravity_axis() else { return name == "wall_normal_stress" };
+    let side = if setup.gravity[axis] < 0.0 { "lower" } else { "upper" };
+    name == "wall_normal_stress" || name == format!("wall_normal_stress_{}_{side}", ["x", "y", "z"][axis])
+}
+
+/// Whether `name` is the stress on a floor that full cells keep grains away from.
+pub(super) fn is_stress_on_untouched_floor(setup: &Setup, name: &str) -> bool {
+    is_floor_untouched(setup) && is_stress_on_the_floor(setup, name)
 }
 
 /// Whether the temperature keeps its size over the second half of the run.

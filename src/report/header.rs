@@ -166,7 +166,8 @@ fn facts(evidence: &Evidence<'_>) -> String {
         ("simulated_time", "simulated time", evidence.setup.named(2)),
         ("resumed_at", "resumed at", evidence.setup.named(2)),
         ("collisions_per_particle", "collisions per particle", String::new()),
-        ("temperature", "granular temperature at the end", energy),
+        ("granular_temperature", "granular temperature at the end, about the local flow", energy.clone()),
+        ("temperature", "temperature at the end, about the mean of all grains", energy),
         ("wall_seconds", "computing time", "s".to_owned()),
     ];
     let entries = facts.iter().filter_map(|(key, title, unit)| {

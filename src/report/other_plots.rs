@@ -43,7 +43,7 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
         let name = format!("steady mean {}", with_error(mean, error));
         curves.push(Curve::new(name, steady, Stroke::Dashed, Ink::Text));
     }
-    let is_floor = described.name == "wall_normal_stress" && figures::is_floor_untouched(evidence.setup);
+    let is_floor = figures::is_stress_on_untouched_floor(evidence.setup, &described.name);
     let caption = if is_floor {
         "Not the weight of the packing: in HSMC a grain that full cells keep back does not touch the floor."
     } else {

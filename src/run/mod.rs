@@ -40,6 +40,13 @@ use summary::Ending;
 /// Raised whenever a release changes the bits of a trajectory.
 pub const NUMERICS: u32 = 2;
 
+/// Raised whenever a release changes what is observed beside the grains, sums and measures, and no trajectory. Verification
+/// compares these between logs of one number alone. Logs that do not say it are of number 1; since 2 a wall is given what it
+/// carries while grains rest on it.
+pub const OBSERVATION: u32 = 2;
+/// Where a log says it.
+const OBSERVATION_KEY: &str = "observation";
+
 /// Why a run could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use super::NUMERICS;
 use super::last_good::last_good;
 use super::looks::Looks;
 use super::shown::Shown;
 use super::timetable::Timetable;
+use super::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
 use crate::observe::field::{Field, field};
@@ -86,6 +86,11 @@ impl Recorder {
             let lost = origin.history.value(RECOVERED_KEY).to_owned();
             header.metadata.insert(RECOVERED_KEY.to_owned(), lost);
         }
+        // The sums of a run go on as they began.
+        match origin.history.value(OBSERVATION_KEY) {
+            "" => header.metadata.remove(OBSERVATION_KEY),
+            number => header.metadata.insert(OBSERVATION_KEY.to_owned(), number.to_owned()),
+        };
         let mut writer = LogWriter::create(path, &header)?;
         let copied = copy_before(origin.log, origin.state, &mut writer, &looks.columns)?;
         let is_here = copied.series.last().is_some_and(|row| row[0] == simulation.gas().time())
@@ -257,6 +262,7 @@ fn metadata<V: Vector>(scenario: &Scenario<V>) -> BTreeMap<String, String> {
         ("seed", scenario.seed.to_string()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("numerics", NUMERICS.to_string()),
+        (OBSERVATION_KEY, OBSERVATION.to_string()),
         ("unit_length", scenario.units.length.clone()),
         ("unit_mass", scenario.units.mass.clone()),
         ("unit_time", scenario.units.time.clone()),

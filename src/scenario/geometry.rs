@@ -29,6 +29,7 @@ impl<V: Vector> Scenario<V> {
             grid: self.grid(),
             boundary: self.boundary,
             grain: self.grain,
+            species: self.species.len(),
             is_poured: self.source.is_some(),
             roughness: self.roughness,
             counts_impacts: self.engine.kind == EngineKind::EventDriven,

@@ -382,3 +382,5 @@ fn equilibrate<V: Vector>(
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wall_impulse_tests;

@@ -1,6 +1,5 @@
 //! Cells and steps that are too coarse for what happens in them.
 
-use crate::law::kinetic_theory::mean_free_path;
 use crate::law::restitution::{Constant, RestitutionLaw};
 use crate::scenario::bound::{rounded, shown};
 use crate::scenario::check::grains_per_cell;
@@ -50,11 +49,8 @@ fn noisy_factor<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
 
 /// Cells in which grains far from each other collide: where a wall drives the flow, and where the gas clusters.
 fn longer_than_paths<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    if scenario.count == 0 {
-        return None;
-    }
+    let path = estimate::mean_free_path(scenario)?;
     let longest = scenario.grid().side().components().into_iter().fold(0.0, f64::max);
-    let path = mean_free_path::<V>(scenario.mean_grain(), scenario.volume_fraction());
     if scenario.boundary.largest_wall_speed() > 0.0 {
         return (longest > 1.1 * path).then(|| {
             format!(
