@@ -172,7 +172,7 @@ pub(super) fn steps_before_the_start<V: Vector>(scenario: &Scenario<V>) -> f64 {
 }
 
 /// Whether nothing feeds the gas: Haff's law then tells how steps grow.
-fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
+pub(super) fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
     scenario.gravity == V::ZERO
         && scenario.boundary.walls().all(|(_, _, wall)| match wall.kind {
             WallKind::Rough { velocity } => velocity == V::ZERO,

@@ -25,6 +25,7 @@ mod reader;
 mod schema;
 mod suggest;
 mod tables;
+pub mod trust;
 mod walls;
 mod warnings;
 

@@ -6,6 +6,7 @@ mod resources;
 
 use super::collapse;
 use super::model::Scenario;
+use super::trust;
 use crate::machine::Machine;
 use crate::space::Vector;
 
@@ -13,6 +14,7 @@ use crate::space::Vector;
 pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> Vec<String> {
     let groups = [
         method::engine(scenario),
+        known(scenario),
         resolution::cells(scenario),
         resolution::gradients(scenario),
         method::gravity(scenario),
@@ -27,6 +29,12 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> V
         resources::disk(scenario, machine),
     ];
     groups.into_iter().flatten().collect()
+}
+
+/// What is known against the engine, where it is worth a warning.
+fn known<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
+    let doubts = trust::doubts_in_space(scenario).into_iter();
+    doubts.filter(|doubt| doubt.is_warning).map(|doubt| doubt.sentence).collect()
 }
 
 #[cfg(test)]
