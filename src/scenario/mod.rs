@@ -11,6 +11,7 @@ mod consistency;
 mod cost;
 pub mod error;
 mod estimate;
+mod exact;
 mod file;
 pub mod geometry;
 pub mod initial;

@@ -1,10 +1,13 @@
 //! What may spoil a run that is not wrong.
 
 mod method;
+mod motion;
 mod resolution;
 mod resources;
 
+use super::check::spoken;
 use super::collapse;
+use super::exact;
 use super::model::Scenario;
 use super::trust;
 use crate::machine::Machine;
@@ -18,6 +21,8 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> V
         resolution::cells(scenario),
         resolution::gradients(scenario),
         method::gravity(scenario),
+        motion::dead(scenario).into_iter().collect(),
+        motion::pouring(scenario).into_iter().collect(),
         collapse::warning(scenario).into_iter().collect(),
         resolution::time_step(scenario),
         resolution::capped_step(scenario),
@@ -34,7 +39,20 @@ pub(super) fn warnings<V: Vector>(scenario: &Scenario<V>, machine: Machine) -> V
 /// What is known against the engine, where it is worth a warning.
 fn known<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let doubts = trust::doubts_in_space(scenario).into_iter();
-    doubts.filter(|doubt| doubt.is_warning).map(|doubt| doubt.sentence).collect()
+    let mut known: Vec<String> =
+        doubts.filter(|doubt| doubt.is_warning).map(|doubt| doubt.sentence).collect();
+    if !known.is_empty() {
+        known.extend(exact_instead(scenario));
+    }
+    known
+}
+
+/// Exact dynamics in place of an engine that is known to be wrong here.
+fn exact_instead<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
+    let proposal = exact::proposal(scenario)?;
+    let long = if proposal.is_as_fast { ", about as long" } else { "" };
+    let took = spoken(proposal.seconds.most);
+    Some(format!("exact dynamics takes up to {took}{long}: {}", proposal.options()))
 }
 
 #[cfg(test)]
