@@ -210,3 +210,86 @@ fn rounded_percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent < 9.95 { format!("{percent:.1}") } else { format!("{percent:.0}") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Overrides, load};
+
+    fn known(name: &str, sets: &[&str]) -> Vec<Doubt> {
+        let sets = sets.iter().map(ToString::to_string).collect();
+        let overrides = Overrides { sets, ..Default::default() };
+        doubts(&load(name, &overrides).unwrap_or_else(|error| panic!("{error}")))
+    }
+
+    fn briefly(name: &str, sets: &[&str]) -> String {
+        known(name, sets).into_iter().map(|doubt| doubt.brief).collect::<Vec<_>>().join("\n")
+    }
+
+    const SHAKEN: &str = "boundary.y.lower={wall='vibrating',amplitude=1e-4,frequency=100}";
+
+    #[test]
+    fn hsmc_under_gravity_is_doubted_for_what_it_gets_wrong_there() {
+        assert!(briefly("heap", &[]).contains("heaps too steep"));
+        assert!(briefly("sedimentation", &[]).contains("beds sink"));
+        assert!(briefly("sedimentation", &[SHAKEN]).contains("shaken beds"));
+        let slope = ["gravity=[4,-9]", "boundary.x=periodic"];
+        assert!(briefly("sedimentation", &slope).contains("freezes flows"));
+        // A pipe has no floor.
+        assert!(!briefly("pipe", &[]).contains("slope") && !briefly("pipe", &[]).contains("bed"));
+    }
+
+    #[test]
+    fn point_engines_are_doubted_in_shaken_beds() {
+        for kind in ["engine.kind=dsmc", "engine.kind=cba"] {
+            let cells = "engine.cell_size=2e-3";
+            assert!(briefly("sedimentation", &[kind, cells, SHAKEN]).contains("shaken beds too low"));
+            assert!(!briefly("sedimentation", &[kind, cells]).contains("shaken"));
+        }
+    }
+
+    #[test]
+    fn exact_dynamics_is_not_doubted() {
+        for name in ["heap", "sedimentation", "shear", "pipe", "clustering", "correlations"] {
+            assert_eq!(known(name, &["engine.kind=event-driven"]), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn a_pressure_that_the_transfer_spoils_is_doubted_by_its_share() {
+        // 1 + 2r ν g beside 1 + (1 + r) ν g at ν = 0.25, r = 0.9: 1.7125 and 1.7521.
+        let short = "run={collisions_per_particle=2}";
+        let doubts = known("cooling", &[short]);
+        let [doubt] = &doubts[..] else { panic!("{doubts:?}") };
+        assert!(doubt.brief.contains("2.3 % too low") && !doubt.is_warning, "{doubt:?}");
+        assert!(doubt.concerns("pressure") && doubt.concerns("compressibility_factor"));
+        assert!(!doubt.concerns("collision_frequency"));
+        let low = known("cooling", &[short, "particles.restitution=0.3"]);
+        assert!(low.iter().any(|doubt| doubt.brief.contains("momentum-change") && doubt.is_warning));
+        for exact in ["particles.restitution=1", "engine.transfer=corrected", "engine.kind=dsmc"] {
+            assert_eq!(known("cooling", &[short, exact]), [], "{exact}");
+        }
+    }
+
+    #[test]
+    fn cells_of_a_driven_flow_are_doubted_by_what_they_cost() {
+        let sentence = |sets: &[&str]| known("shear", sets)[0].sentence.clone();
+        assert!(sentence(&[]).contains("multiply the viscosity by 1.104"), "{}", sentence(&[]));
+        let long = sentence(&["engine.cell_size=10"]);
+        assert!(long.contains("by 2.66") && long.contains("engine.cell_size = 2.45 would"), "{long}");
+        // At ν = 0.4 the mean free path is 0.3 d, and no cell is as short.
+        let dense = sentence(&["particles.volume_fraction=0.4"]);
+        assert!(dense.contains("take event-driven"), "{dense}");
+    }
+
+    #[test]
+    fn gases_are_doubted_once_they_cluster_and_not_before() {
+        assert!(briefly("clustering", &[]).contains("once the gas clusters, cba"));
+        assert!(briefly("correlations", &[]).contains("once the gas clusters, hsmc"));
+        // At r = 0.98 the same gas agrees with exact dynamics within 1 % to the end.
+        assert!(!briefly("correlations", &["particles.restitution=0.98"]).contains("clusters"));
+        // A box too small for a shear mode.
+        let small = ["particles.count=30", "domain.size=[10,10]"];
+        assert!(!briefly("cooling", &small).contains("clusters"));
+    }
+}

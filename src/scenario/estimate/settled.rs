@@ -2,7 +2,8 @@
 //!
 //! What lies under gravity carries what lies above it by collisions alone. Each hands over about m v, v the speed with which
 //! grains bounce where they lie, so that a grain with the weight of B grains on it collides k g B/v times per time. Measured
-//! were k = 6.7 … 11 in beds at rest (2D, 3 to 30 layers, r = 0.6 and 0.9, v the speed of the cure from 0.1 to 0.5 √(g d)).
+//! in beds at rest, v the speed of the cure from 0.1 to 0.5 √(g d), r = 0.6 and 0.9: k = 6.7 … 11 in 2D (3 to 30 layers),
+//! 11 … 14 in 3D (9 layers).
 
 use super::{Estimate, resting_time};
 use crate::engine::event_driven::rules::resting_speed;
@@ -11,8 +12,8 @@ use crate::scenario::cost;
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
-/// k, at least and at most.
-const COLLISIONS_UNDER_LOAD: (f64, f64) = (6.5, 11.0);
+/// k, at least and at most, in a plane and in space.
+const COLLISIONS_UNDER_LOAD: [(f64, f64); 2] = [(6.5, 11.0), (11.0, 14.0)];
 /// Matter that flows down a slope is heated, and collides less often than at rest, by up to this factor.
 const HEATED_BY_FLOW: f64 = 5.0;
 /// Slope of a heap, for its height.
@@ -46,7 +47,7 @@ fn frequency<V: Vector>(scenario: &Scenario<V>, grains: f64) -> Option<(f64, f64
     let speed = slow.max(scenario.boundary.largest_wall_speed());
     let load = scenario.gravity[axis].abs() * load(scenario, axis, grains) / speed;
     let is_tilted = (0..V::DIMENSION).any(|other| other != axis && scenario.gravity[other] != 0.0);
-    let (least, most) = COLLISIONS_UNDER_LOAD;
+    let (least, most) = COLLISIONS_UNDER_LOAD[V::DIMENSION - 2];
     Some((least * load / if is_tilted { HEATED_BY_FLOW } else { 1.0 }, most * load))
 }
 
