@@ -50,7 +50,8 @@ pub struct StraightLine {
     pub slope_error: Option<f64>,
     /// Standard error of the intercept from the scatter about the line; `None` for two points.
     pub intercept_error: Option<f64>,
-    /// R², the share of the variance of y that the line explains; 1 when y does not vary at all.
+    /// R², the share of the variance of y that the line explains; not a number where y does not vary: there is nothing
+    /// to explain.
     pub r_squared: f64,
 }
 
@@ -113,7 +114,7 @@ pub fn straight_line(x: &[f64], y: &[f64]) -> Option<StraightLine> {
         intercept: y_mean - slope * x_mean,
         slope_error: variance.map(|s| (s / xx).sqrt()),
         intercept_error: variance.map(|s| (s * (1.0 / x.len() as f64 + x_mean * x_mean / xx)).sqrt()),
-        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
+        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { f64::NAN },
     })
 }
 
@@ -151,6 +152,13 @@ mod tests {
         assert_eq!(straight_line(&[1.0], &[0.0]), None);
         assert_eq!(straight_line(&[0.0, 1.0], &[0.0, f64::NAN]), None);
         assert_eq!(straight_line(&[0.0, 1.0], &[3.0, 1.0]).unwrap().slope_error, None);
+    }
+
+    #[test]
+    fn a_line_through_equal_values_explains_nothing() {
+        let flat = straight_line(&[0.0, 1.0, 2.0], &[0.5; 3]).unwrap();
+        assert_eq!((flat.slope, flat.intercept), (0.0, 0.5));
+        assert!(flat.r_squared.is_nan(), "{}", flat.r_squared);
     }
 
     #[test]

@@ -77,7 +77,9 @@ impl<V: Vector> Measure<V> for VelocityProfile<V> {
             in_blocks.iter().filter_map(|block| Some(self.line(&heights, block)?.slope)).collect();
         let line = self.line(&heights, &velocities);
         let slope = line.map(|line| Estimate { value: line.slope, standard_error: standard_error(&slopes) });
-        let r_squared = line.map(|line| Estimate { value: line.r_squared, standard_error: None });
+        // A profile that does not vary is no straight line that is met well.
+        let share = line.map(|line| line.r_squared).filter(|share| share.is_finite());
+        let r_squared = share.map(|value| Estimate { value, standard_error: None });
         let profile = Profile {
             name: "velocity-profile".to_owned(),
             time: snapshot.gas.time(),

@@ -5,6 +5,7 @@ use super::evidence::Evidence;
 use super::number::number;
 use super::setup::Setup;
 use crate::comparison::unit_of as unit_of_figure;
+use crate::scenario::trust;
 use crate::simulation::figures as keys;
 use crate::statistics::block_average;
 
@@ -158,6 +159,13 @@ pub(super) fn doubt(evidence: &Evidence<'_>, name: &str) -> Option<String> {
     }
     let (column, _) = evidence.column(name)?;
     drift(second_half(&evidence.series(0, column)))
+}
+
+/// What is known against the engine of this run where it concerns a figure, in a few words.
+pub(super) fn known_faults(evidence: &Evidence<'_>, name: &str) -> Vec<String> {
+    let Some(known) = &evidence.setup.known else { return Vec::new() };
+    let doubts = trust::doubts(&known.scenario).into_iter();
+    doubts.filter(|doubt| doubt.concerns(name)).map(|doubt| format!("known fault: {}", doubt.brief)).collect()
 }
 
 /// Whether the two halves of steady values differ by more than their errors and a tenth of themselves.

@@ -13,6 +13,7 @@ use super::reference::{Reference, references};
 use super::setup::Setup;
 use crate::observe::measure::Dimension;
 use crate::record::summary::failure;
+use crate::scenario::trust;
 
 /// Title, sentence, figures.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {
@@ -28,6 +29,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
     if evidence.summary.get("interrupted") == Some(&Value::Bool(true)) {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
+    html.push_str(&known_faults(evidence));
     let references = references(evidence);
     let mut cards: String = references
         .iter()
@@ -58,6 +60,18 @@ fn failure_words(evidence: &Evidence<'_>) -> String {
         escape(&when),
         escape(why).replace('\n', "<br>"),
     )
+}
+
+/// Where the engine is known to be wrong, before the figures that it concerns.
+fn known_faults(evidence: &Evidence<'_>) -> String {
+    let Some(known) = &evidence.setup.known else { return String::new() };
+    let doubts = trust::doubts(&known.scenario).into_iter().filter(|doubt| doubt.is_warning);
+    doubts
+        .map(|doubt| {
+            let sentence = format!("Known of this engine here: {}.", doubt.sentence);
+            format!("<p class=\"warning\">{}</p>\n", escape(&sentence))
+        })
+        .collect()
 }
 
 /// What ran, for how long, in one sentence.
@@ -129,6 +143,7 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Reference]) -> String
     notes.extend(
         references.iter().find(|r| r.figure == name).map(|r| format!("expected {}", r.expected.text())),
     );
+    notes.extend(figures::known_faults(evidence, name));
     let text = with_error(value, evidence.standard_error(name));
     let doubt = figures::doubt(evidence, name);
     entry(&in_words(name), &text, &figures::unit_of(evidence, name), &notes, doubt.as_deref())

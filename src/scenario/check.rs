@@ -6,7 +6,7 @@ use super::bound::rounded;
 use super::estimate::{self, Estimate};
 use super::initial;
 use super::model::{AnyScenario, EngineKind, InitialPositions, Scenario};
-use super::{cost, warnings};
+use super::{cost, exact, warnings};
 use crate::law::piecewise::PiecewiseLinear;
 use crate::machine::Machine;
 use crate::space::Vector;
@@ -162,6 +162,10 @@ impl Check {
         }
         if let Some(seconds) = cost::seconds(scenario) {
             self.add("expected time", format!("{} on one core", told(seconds, 2.0, spoken)));
+        }
+        if let Some(exact) = exact::proposal(scenario) {
+            let long = told(exact.seconds, 2.0, spoken);
+            self.add("exact dynamics", format!("{long} on one core ({})", exact.options()));
         }
     }
 }

@@ -34,11 +34,14 @@ pub(super) fn final_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
 
 /// Whether grains come to lie on a face: gravity along an axis that has an end.
 pub(super) fn settles<V: Vector>(scenario: &Scenario<V>) -> bool {
-    (0..V::DIMENSION).any(|axis| {
-        let side = usize::from(scenario.gravity[axis] > 0.0);
-        let faces = scenario.boundary.faces(axis);
-        scenario.gravity[axis] != 0.0 && faces.is_some_and(|faces| matches!(faces[side], Face::Wall(_)))
-    })
+    (0..V::DIMENSION).any(|axis| settles_along(scenario, axis))
+}
+
+/// The same along `axis`.
+pub(super) fn settles_along<V: Vector>(scenario: &Scenario<V>, axis: usize) -> bool {
+    let side = usize::from(scenario.gravity[axis] > 0.0);
+    let faces = scenario.boundary.faces(axis);
+    scenario.gravity[axis] != 0.0 && faces.is_some_and(|faces| matches!(faces[side], Face::Wall(_)))
 }
 
 /// How long a run lasts in its own time [time].

@@ -1,5 +1,8 @@
 //! What kinetic theory says about a run: collisions, first step, number of steps.
 
+mod settled;
+
+use super::cost::settles;
 use super::initial::stated_temperature;
 use super::model::{EngineKind, RunLimits, Scenario, TimeStep};
 use super::pace::{falling_speed, falls_for_ever, longest_step, starting_speed};
@@ -109,9 +112,15 @@ pub(super) fn capped_step<V: Vector>(scenario: &Scenario<V>) -> Option<(f64, f64
 }
 
 /// Collisions of an event-driven run until its first limit, those of its equilibration included; `None` for
-/// engines with steps, and where grains begin at rest.
+/// engines with steps, and where grains begin at rest without coming to lie.
 pub(super) fn collisions<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
-    let rates = rates(scenario).filter(|_| scenario.engine.kind.is_event_driven())?;
+    if !scenario.engine.kind.is_event_driven() {
+        return None;
+    }
+    if settles(scenario) {
+        return settled::collisions(scenario);
+    }
+    let rates = rates(scenario)?;
     let RunLimits { time, collisions_per_particle, .. } = scenario.run;
     let by_time = time.or(resting_time(scenario)).map(|time| match cools(scenario) {
         true => collisions_until(scenario, time, rates),
@@ -198,7 +207,7 @@ pub(super) fn steps_before_the_start<V: Vector>(scenario: &Scenario<V>) -> f64 {
 }
 
 /// Whether nothing feeds the gas: Haff's law then tells how steps grow.
-fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
+pub(super) fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
     scenario.gravity == V::ZERO
         && scenario.boundary.walls().all(|(_, _, wall)| match wall.kind {
             WallKind::Rough { velocity } => velocity == V::ZERO,

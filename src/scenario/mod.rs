@@ -11,6 +11,7 @@ mod consistency;
 mod cost;
 pub mod error;
 mod estimate;
+mod exact;
 mod file;
 pub mod geometry;
 pub mod initial;
@@ -26,6 +27,7 @@ mod reader;
 mod schema;
 mod suggest;
 mod tables;
+pub mod trust;
 mod walls;
 mod warnings;
 

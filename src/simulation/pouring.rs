@@ -60,6 +60,7 @@ pub struct Pouring<V> {
     axis: usize,
     /// +1 where up is along the axis, −1 where gravity points along it.
     up: f64,
+    gravity: V,
     poured: u32,
     last_poured: f64,
     /// No grain comes before [time].
@@ -79,6 +80,7 @@ impl<V: Vector> Pouring<V> {
             streams: Streams::new(scenario.seed),
             axis,
             up,
+            gravity,
             poured: 0,
             last_poured: -1.0,
             held_until: 0.0,
@@ -159,7 +161,8 @@ impl<V: Vector> Pouring<V> {
     }
 
     /// Height above the ground of the upper side of the highest place that is full: a place is a cube
-    /// two diameters wide, full at random close packing. 0 while none is full.
+    /// two diameters wide, full at random close packing. 0 while none is full. Where the stream from the spout is so dense
+    /// that it fills places by itself, its grains do not count: they are on their way, and nothing lies on them.
     fn top_of_full_places(&self, gas: &Gas<V>) -> f64 {
         let width =
             PLACE_WIDTH * gas.species.iter().fold(gas.grain.diameter, |d, grain| d.max(grain.diameter));
@@ -169,10 +172,14 @@ impl<V: Vector> Pouring<V> {
         let volume = gas.grain.volume::<V>();
         let full = (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / volume).floor();
         let is_mixture = !gas.species.is_empty();
+        let is_dense = 2.0 * self.source.in_flight(self.gravity, width) >= full;
         // Grains in each place, counted by their volumes where those differ.
         let mut counts = vec![0.0; places.iter().product()];
         let mut top = 0;
         for (row, &position) in gas.positions().iter().enumerate() {
+            if is_dense && self.falls_freely(gas.velocities()[row]) {
+                continue;
+            }
             let (mut place, mut level) = (0, 0);
             for axis in (0..V::DIMENSION).rev() {
                 let upwards = axis != self.axis || self.up > 0.0;
@@ -191,6 +198,17 @@ impl<V: Vector> Pouring<V> {
             }
         }
         top as f64 * width
+    }
+}
+
+impl<V: Vector> Pouring<V> {
+    /// Whether a grain of this velocity has met nothing since the spout let it go: gravity changes its velocity along one
+    /// axis alone, and downwards alone, while a collision with another grain changes the others as well.
+    fn falls_freely(&self, velocity: V) -> bool {
+        (0..V::DIMENSION).all(|axis| match axis == self.axis {
+            true => self.up * velocity[axis] <= self.up * self.source.velocity[axis],
+            false => velocity[axis] == self.source.velocity[axis],
+        })
     }
 }
 

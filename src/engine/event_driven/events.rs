@@ -2,6 +2,7 @@
 
 use super::body::{Contact, Event, Face, Plan};
 use super::collapse::{cured_restitution, turn_relative_velocity};
+use super::rules::resting_speed;
 use super::world::World;
 use crate::engine::EngineError;
 use crate::engine::report::IMPACT_BINS;
@@ -121,12 +122,12 @@ impl<V: Vector> World<V> {
     }
 
     /// Key and value of a cure. Grains that lie collide all the time, which a contact time would take for lasting
-    /// contacts; a speed that did not do wants to be larger.
+    /// contacts; a speed that did not do wants to be larger, and under gravity no less than what has been tried.
     fn remedy(&self) -> (&'static str, f64) {
-        let drop = self.laws.gravity.length() * self.laws.largest_diameter();
+        let tried = resting_speed(self.laws.gravity.length(), self.laws.largest_diameter());
         match self.laws.cure.elastic_below {
-            Some(speed) => ("elastic_below", 2.0 * speed),
-            None if self.falls => ("elastic_below", 0.05 * drop.sqrt()),
+            Some(speed) => ("elastic_below", tried.max(2.0 * speed)),
+            None if self.falls => ("elastic_below", tried),
             None => ("contact_time", 1e-3 * self.pace.time_between_events(self.bodies.len())),
         }
     }

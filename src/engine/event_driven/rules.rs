@@ -32,3 +32,9 @@ pub struct Cure {
     /// An inelastic collision turns the relative velocity by a random angle up to this one [radian].
     pub rotation: Option<f64>,
 }
+
+/// The speed of [`Cure::elastic_below`] with which grains that come to rest under `gravity` have been followed to the end
+/// [length/time]: 0.3 √(g d). docs/event-driven.md has the runs, among them those that ended in collapse with a third of it.
+pub fn resting_speed(gravity: f64, diameter: f64) -> f64 {
+    0.3 * (gravity * diameter).sqrt()
+}
