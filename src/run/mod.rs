@@ -28,7 +28,7 @@ use crate::record::summary::SUMMARY;
 use crate::record::{LOG, log_at};
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
-use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use crate::scenario::model::{AnyScenario, InitialPositions, Scenario, Units};
 use crate::simulation::{Simulation, SimulationError};
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
@@ -125,6 +125,8 @@ pub struct Outcome {
     pub folder: PathBuf,
     /// The summary.
     pub summary: Map<String, Value>,
+    /// Names of its units.
+    pub units: Units,
     /// Whether somebody stopped the run before its end.
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
@@ -206,9 +208,11 @@ impl<V: Vector> Run<'_, V> {
         // The last one: where it stands, the run is complete.
         write_text(&folder.path().join(SUMMARY), &(pretty(&summary) + "\n"))?;
         let folder = folder.settle()?;
+        let units = simulation.scenario().units.clone();
         Ok(Outcome {
             folder,
             summary,
+            units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
         })

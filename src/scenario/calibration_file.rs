@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
-use super::bound::{Bound, shown};
+use super::bound::Bound;
 use super::locate::Change;
 use super::path::KeyPath;
+use crate::number::exact;
 
 /// A law that is given by points: in lists of the scenario, or in columns of a file.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +123,7 @@ fn points(text: &str, columns: [(&str, Bound); 2]) -> Result<[Vec<f64>; 2], Stri
         if let [.., left, right] = lists[0][..]
             && left >= right
         {
-            let (left, right) = (shown(left), shown(right));
+            let (left, right) = (exact(left), exact(right));
             let (line, column) = (number + 1, columns[0].0);
             return Err(format!(
                 ":{line}: column `{column}`: must rise, but {right} follows {left}; sort the lines"

@@ -2,7 +2,8 @@
 
 use crate::law::kinetic_theory::mean_free_path;
 use crate::law::restitution::{Constant, RestitutionLaw};
-use crate::scenario::bound::{rounded, shown};
+use crate::number::exact;
+use crate::scenario::bound::rounded;
 use crate::scenario::check::grains_per_cell;
 use crate::scenario::model::{EngineKind, EnskogFactor, Scenario, TimeStep};
 use crate::scenario::{cost, estimate, initial, pace};
@@ -140,7 +141,7 @@ pub(super) fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
         warnings.push(format!(
             "the fixed step {} will be too long: {who} at {}, and a step that is too long ends the run; \
              engine.time_step.fixed = {} would do",
-            shown(step),
+            exact(step),
             rounded(speed),
             pace::rounded_down(pace::longest_step(scenario, later))
         ));
