@@ -37,6 +37,18 @@ impl Trend {
             Trend::Wandering => "wandering",
         }
     }
+
+    /// The trend of that name; `None` where there is none.
+    pub fn of_name(name: &str) -> Option<Trend> {
+        [Trend::Steady, Trend::Rising, Trend::Falling, Trend::Wandering]
+            .into_iter()
+            .find(|trend| trend.name() == name)
+    }
+
+    /// Whether it is steady.
+    pub fn is_steady(self) -> bool {
+        self == Trend::Steady
+    }
 }
 
 /// A straight line y = intercept + slope·x by least squares, every point with the same weight.

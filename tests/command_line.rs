@@ -83,6 +83,10 @@ fn a_run_folder_is_complete() {
     assert!(fs::read_to_string(folder.join("report.html")).unwrap().starts_with("<!DOCTYPE html>"));
     let said = text(&output);
     assert!(
+        said.lines().any(|line| line.starts_with("  pressure ") && line.contains(" mass/time^2")),
+        "{said}"
+    );
+    assert!(
         said.contains("cooling with hsmc: ended by its limit")
             && said.contains("out/cooling-hsmc/report.html")
     );

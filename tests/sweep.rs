@@ -165,6 +165,12 @@ fn mistakes_are_told_before_anything_is_written() {
     assert!(said.contains("--vary #1 'particles.restitution=1.5': particles.restitution: "), "{said}");
     let said = place.refused(&["--vary", RESTITUTIONS, "--figure", "wall_shear_stres"]);
     assert!(said.contains("did you mean `wall_shear_stress`?"), "{said}");
+    let said = place.refused(&["--vary", RESTITUTIONS, "--figure", "stress"]);
+    assert!(said.contains("did you mean `wall_shear_stress`"), "{said}");
+    let said = place.refused(&["--vary", "particles.restitution=[0.9,", "0.7]"]);
+    assert!(said.contains("quote it: 'particles.restitution=[0.9, 0.7]'"), "{said}");
+    let said = place.refused(&["--vary", RESTITUTIONS, "--seed", "-1"]);
+    assert!(said.contains("give a whole number from 0 to 9223372036854775807"), "{said}");
     let said = place.refused(&["--vary", RESTITUTIONS, "--engines", "hsmc,dsmcc"]);
     assert!(said.contains("--engines 'dsmcc'"), "{said}");
     assert!(place.refused(&["--vary", RESTITUTIONS, "--set", "run.steps=-1"]).contains("--set #1"));
@@ -334,4 +340,40 @@ fn the_page_needs_nothing_else() {
     let said = text.split("exponent ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     let difference = said.parse::<f64>().unwrap() - law["exponent"].as_f64().unwrap();
     assert!(difference.abs() < 0.1 * law["exponent_standard_error"].as_f64().unwrap(), "{said}: {law}");
+}
+
+#[test]
+fn what_is_not_steady_is_said_and_left_out_of_fits() {
+    let place = Place::with_gas();
+    let more = ["--vary", "particles.count=[20, 40, 100, 200]", "--figure", "wall_normal_stress"];
+    place.ends(&more, 0);
+    // Summaries made up: the stress is that of a count, but for one that still rises.
+    for (count, stress) in [(20, 2.0), (40, 4.0), (100, 7.0), (200, 20.0)] {
+        let file = format!("out/gas-sweep/count={count}/summary.json");
+        let mut summary = place.json(&file);
+        let mut set =
+            |ending: &str, value: Value| summary.insert(format!("wall_normal_stress{ending}"), value);
+        set("", stress.into());
+        set("_standard_error", (0.01 * stress).into());
+        set("_degrees_of_freedom", 17.0.into());
+        set("_steady", (count != 100).into());
+        set("_trend", if count == 100 { "rising".into() } else { Value::Null });
+        fs::write(place.path(&file), Value::Object(summary).to_string()).unwrap();
+    }
+    let (text, _) = place.ends(&more, 0);
+    assert!(text.contains("particles.count = 100        not steady (rising, mean 7)"), "{text}");
+    assert!(text.contains("1 point is not steady: no fit takes it"), "{text}");
+    assert_eq!(place.column("out/gas-sweep", "wall_normal_stress_steady"), ["true", "true", "false", "true"]);
+    let json = place.json("out/gas-sweep/sweep.json");
+    let law = &json["power_laws"][0];
+    assert!((law["exponent"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{law}");
+    assert_eq!((&law["points"], &law["points_left_out_as_not_steady"]), (&3.into(), &1.into()));
+    let of = |point: usize| &json["points"][point]["figures"]["wall_normal_stress"];
+    assert_eq!((&of(2)["steady"], &of(2)["trend"]), (&false.into(), &"rising".into()));
+    assert_eq!((&of(0)["steady"], &of(0)["degrees_of_freedom"]), (&true.into(), &17.0.into()));
+    let page = fs::read_to_string(place.path("out/gas-sweep/sweep.html")).unwrap();
+    assert!(
+        page.contains("fill:none;stroke:") && page.contains("The ring is a mean of runs that are not steady")
+    );
+    assert!(page.contains("<td class=\"number\">not steady (rising, mean 7)</td>"));
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// The floors, lowest first, with their modules in the order of `src/lib.rs`.
 const FLOORS: [(&str, &[&str]); 8] = [
-    ("mathematics", &["random", "space", "statistics"]),
+    ("mathematics", &["number", "random", "space", "statistics"]),
     ("matter", &["matter"]),
     ("laws", &["law"]),
     ("engines", &["engine"]),

@@ -19,7 +19,7 @@ mod read;
 mod scatter;
 mod series;
 mod stability;
-mod student;
+pub(crate) mod student;
 #[cfg(test)]
 mod testing;
 pub mod theory;

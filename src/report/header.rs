@@ -7,10 +7,10 @@ use serde_json::Value;
 use super::escape::escape;
 use super::evidence::Evidence;
 use super::figures;
-use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
 use super::reference::{Reference, references};
 use super::setup::Setup;
+use crate::number::{NOT_STEADY, count, in_words, number, with_error};
 use crate::observe::measure::Dimension;
 use crate::record::summary::failure;
 use crate::scenario::trust;
@@ -144,9 +144,14 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Reference]) -> String
         references.iter().find(|r| r.figure == name).map(|r| format!("expected {}", r.expected.text())),
     );
     notes.extend(figures::known_faults(evidence, name));
+    let unit = figures::unit_of(evidence, name);
+    if let Some(trend) = evidence.unsteady(name) {
+        let told = format!("{}, mean {} {unit}", trend.name(), number(value, 3));
+        return entry(&in_words(name), NOT_STEADY, "", &notes, Some(told.trim_end()));
+    }
     let text = with_error(value, evidence.standard_error(name));
     let doubt = figures::doubt(evidence, name);
-    entry(&in_words(name), &text, &figures::unit_of(evidence, name), &notes, doubt.as_deref())
+    entry(&in_words(name), &text, &unit, &notes, doubt.as_deref())
 }
 
 /// t₀ is no figure of the summary: it is fitted here.

@@ -29,7 +29,7 @@ use crate::record::summary::SUMMARY;
 use crate::record::{LOG, log_at};
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
-use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use crate::scenario::model::{AnyScenario, InitialPositions, Scenario, Units};
 use crate::simulation::{Simulation, SimulationError};
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
@@ -150,6 +150,8 @@ pub struct Outcome {
     pub folder: PathBuf,
     /// The summary.
     pub summary: Map<String, Value>,
+    /// Names of its units.
+    pub units: Units,
     /// Whether somebody stopped the run before its end.
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
@@ -225,9 +227,11 @@ impl<V: Vector> Run<'_, V> {
         let recorded = recorder.finish(&mut simulation)?;
         let summary = write_files(&folder, &mut simulation, ending, &watch, &recorded)?;
         let folder = folder.settle()?;
+        let units = simulation.scenario().units.clone();
         Ok(Outcome {
             folder,
             summary,
+            units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
         })

@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
-use super::bound::{Bound, shown};
+use super::bound::Bound;
 use super::locate::Change;
 use super::path::KeyPath;
+use crate::number::exact;
 
 /// A law that is given by points: in lists of the scenario, or in columns of a file.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +127,7 @@ fn points(text: &str, columns: [(&str, Bound); 2]) -> Result<[Vec<f64>; 2], Stri
         if let [.., left, right] = lists[0][..]
             && left >= right
         {
-            let (left, right, column) = (shown(left), shown(right), columns[0].0);
+            let (left, right, column) = (exact(left), exact(right), columns[0].0);
             return Err(at_line(format!(
                 "column `{column}`: must rise, but {right} follows {left}; sort the lines"
             )));
