@@ -5,7 +5,7 @@
 
 use super::errors::{Along, Raw, Terms, Whole};
 use super::model::{Difference, Overall, Peak, Verdict};
-use super::student::{THREE_SIGMA, threshold};
+use crate::statistics::student::{THREE_SIGMA, threshold};
 use super::words::{Shown, Subject, overall_sentence, sentence, unknown_sentence};
 
 /// The verdict on `raw`, with its words.
