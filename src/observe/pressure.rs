@@ -2,7 +2,7 @@
 
 use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
-use super::samples::{Samples, figure, interval_mean};
+use super::samples::{Samples, figure, steady_rate, steady_ratio};
 use super::setting::Setting;
 use super::units::{PURE, column, stress};
 use crate::space::Vector;
@@ -16,7 +16,8 @@ use crate::space::Vector;
 /// the second is zero.
 ///
 /// Between two looks at the gas T is taken as √(T₁T₂): the exact mean of a temperature that
-/// falls by Haff's law, and right to second order for any other.
+/// falls by Haff's law, and right to second order for any other. The figures are those of whole stretches: the pressure is
+/// its mean over time, PV/NT is the ratio of the means of PV and NT.
 #[derive(Clone, Debug)]
 pub struct Pressure {
     /// V [lengthᴰ].
@@ -53,14 +54,30 @@ impl Pressure {
 
     fn interval(&self, first: &[f64], last: &[f64]) -> Interval {
         let duration = last[0] - first[0];
-        let grains = last[3];
-        let thermal = (grains - 1.0) * (first[1] * last[1]).sqrt();
+        let thermal = thermal(first, last);
         let collisional = (last[2] - first[2]) / (self.dimension * duration);
         Interval {
             pressure: (thermal + collisional) / self.volume,
             compressibility_factor: 1.0 + collisional / thermal,
         }
     }
+
+    /// Time, ∫ (N − 1) T dt since the first row, and Σ p·s/D, `[row]`.
+    fn integrals(&self, rows: &[&[f64]]) -> Vec<[f64; 3]> {
+        let mut sum = 0.0;
+        let mut integrals = Vec::with_capacity(rows.len());
+        for (k, row) in rows.iter().enumerate() {
+            let before = rows[k.saturating_sub(1)];
+            sum += thermal(before, row) * (row[0] - before[0]);
+            integrals.push([row[0], sum, row[2] / self.dimension]);
+        }
+        integrals
+    }
+}
+
+/// (N − 1) T between two rows.
+fn thermal(first: &[f64], last: &[f64]) -> f64 {
+    (last[3] - 1.0) * (first[1] * last[1]).sqrt()
 }
 
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> Row {
@@ -101,11 +118,11 @@ impl<V: Vector> Measure<V> for Pressure {
     fn conclusion(&self, snapshot: &Snapshot<'_, V>, from: f64) -> (Vec<Profile>, Vec<Figure>) {
         let end = row(snapshot);
         let samples = self.samples.with(end[0], &end[1..]);
-        let rows = samples.since(from);
-        let mean = |value: fn(Interval) -> f64| interval_mean(&rows, |a, b| value(self.interval(a, b)));
+        let rows = self.integrals(&samples.since(from));
+        let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
         let figures = vec![
-            figure("pressure", mean(|interval| interval.pressure)),
-            figure("compressibility_factor", mean(|interval| interval.compressibility_factor)),
+            figure("pressure", steady_rate(&rows, |row| (row[1] + row[2]) / self.volume)),
+            figure("compressibility_factor", steady_ratio(&rows, |row| row[1] + row[2], |row| row[1])),
         ];
         (Vec::new(), figures)
     }

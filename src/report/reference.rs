@@ -3,10 +3,10 @@
 use super::energy_plots::Haff;
 use super::evidence::Evidence;
 use crate::comparison::laws;
-use crate::comparison::student::threshold;
 use crate::number::{figure_text, number};
 use crate::scenario::model::EngineKind;
 use crate::statistics::Trend;
+use crate::statistics::student::threshold;
 
 /// What a figure should be.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -90,7 +90,10 @@ mod tests {
         let long = ["particles.restitution=0.8", "run={collisions_per_particle=100}"];
         let said = warned("cooling", &[dilute, long].concat());
         // 1/(2 √2 n d χ) with n = 0.05/(π/4) and χ = (1 − 7ν/16)/(1 − ν)².
-        assert!(said.contains("cells of 14.77 are longer than the mean free path 5.124: cells near it"), "{said}");
+        assert!(
+            said.contains("cells of 14.77 are longer than the mean free path 5.124: cells near it"),
+            "{said}"
+        );
         let short = warned("cooling", &[&dilute[..], &long[..], &["engine.cell_size=5"]].concat());
         assert!(short.contains("once the gas clusters") && !short.contains("mean free path"), "{short}");
         let others = ["run={collisions_per_particle=2}", "particles.restitution=1"];
@@ -133,7 +136,9 @@ mod tests {
     #[test]
     fn a_vibrating_wall_that_may_reach_nothing_is_said() {
         let shaken = |amplitude: &str| {
-            let wall = format!("boundary.y={{lower={{wall='vibrating',amplitude={amplitude},frequency=1}},upper='open'}}");
+            let wall = format!(
+                "boundary.y={{lower={{wall='vibrating',amplitude={amplitude},frequency=1}},upper='open'}}"
+            );
             warned("shear", &["initial.velocities=rest", "run={time=10}", &wall])
         };
         // 2037 grains over a height of 40: 0.05 of them within 10⁻³.
@@ -145,7 +150,11 @@ mod tests {
     fn a_source_faster_than_its_spout_is_said_before_the_run() {
         let fast = ["source.rate=8"];
         // Four grains to a cell, and half of its side to fall: 4/√2.
-        assert!(warned("heap", &fast).contains("its spout lets out about 2.828 at most"), "{}", warned("heap", &fast));
+        assert!(
+            warned("heap", &fast).contains("its spout lets out about 2.828 at most"),
+            "{}",
+            warned("heap", &fast)
+        );
         let exact = warned("heap", &["source.rate=8", "engine.kind=event-driven"]);
         assert!(exact.contains("lets out about 0.7071 at most"), "{exact}");
         assert!(!warned("heap", &[]).contains("at most: "));

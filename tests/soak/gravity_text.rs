@@ -100,7 +100,8 @@ impl Case {
         text +=
             &format!("cell_restitution = {}\n", dice.one_of(&["0.9", "1.0", "{ at_least = 0.9 }", "0.0"]));
         if dice.chance(0.2) {
-            text += "entry_probability = { volume_fraction = [0.0, 0.6, 0.8], probability = [1.0, 0.7, 0.0] }\n";
+            text +=
+                "entry_probability = { volume_fraction = [0.0, 0.6, 0.8], probability = [1.0, 0.7, 0.0] }\n";
         }
         text
     }
