@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_grain_on_a_wall_is_drawn_though_its_place_is_rounded_out() {
-        let canvas = Canvas::new(&walls(0.6, 0.6), 2, 1, false);
+        let canvas = Canvas::new(&walls(0.6, 0.6), 2, 1, Colours::Plain);
         assert_eq!(canvas.draw(&frame(&[[0.6, 0.6, 0.0]]), 0.05), ["\u{2800}\u{2808}"]);
     }
 
