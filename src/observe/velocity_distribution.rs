@@ -3,7 +3,7 @@
 use super::last_look::LastLook;
 use super::layout;
 use super::local_flow::LocalFlow;
-use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
+use super::measure::{Cadence, Column, Effort, Figure, Measure, Profile, Snapshot};
 use super::moments::kinetic_energy;
 use super::samples::{Samples, figure, steady_mean, steady_means};
 use super::setting::Setting;
@@ -166,6 +166,10 @@ impl<V: Vector> Measure<V> for VelocityDistribution {
 
     fn cadence(&self) -> Cadence {
         Cadence::Spread
+    }
+
+    fn effort(&self) -> Effort {
+        Effort::Table
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {

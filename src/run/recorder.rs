@@ -147,7 +147,7 @@ impl Recorder {
         if self.last_recorded != Some(simulation.observation().1.place()) {
             self.record(simulation, Shown::ALL)?;
         }
-        let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
+        let from = simulation.steady_from();
         let (measures, snapshot) = simulation.observation();
         for (measure, &stored) in measures.iter().zip(&self.looks.stored) {
             let (profiles, figures) = measure.conclusion(&snapshot, from);

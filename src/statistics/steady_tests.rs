@@ -71,14 +71,15 @@ fn true_means_of_many_series_lie_inside_their_intervals() {
 #[test]
 fn a_memory_as_long_as_the_series_leaves_no_small_error() {
     // The mean of a series of half a correlation time is off by nearly its standard deviation.
-    for seed in 0..50 {
-        let estimate = of_values(&Series::new(seed, Kind::Remembering(800.0)).take(400));
-        let is_safe = estimate
-            .standard_error
-            .zip(estimate.freedom)
-            .is_none_or(|(error, freedom)| student::two_sided(estimate.value.abs() / error, freedom) > 1e-3);
-        assert!(is_safe || estimate.trend != Some(Trend::Steady), "{seed}: {estimate:?}");
-    }
+    let is_misleading = |seed: &u64| {
+        let estimate = of_values(&Series::new(*seed, Kind::Remembering(800.0)).take(400));
+        let stated = estimate.standard_error.zip(estimate.freedom);
+        let is_off = stated
+            .is_some_and(|(error, freedom)| student::two_sided(estimate.value.abs() / error, freedom) < 1e-2);
+        is_off && estimate.trend == Some(Trend::Steady)
+    };
+    let misleading = (0..200).filter(is_misleading).count();
+    assert!(misleading <= 20, "{misleading} of 200");
 }
 
 /// A change by so many of its own standard errors on top of noise of variance 1: by a straight line, or at one place.
