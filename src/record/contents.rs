@@ -83,7 +83,7 @@ pub fn within_rounding(place: f64, lower: f64, upper: f64) -> f64 {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Walls {
     /// Lower corner of the space that grains may be in, the strokes of vibrating walls included [length]; z = 0 in 2D.
-    /// In logs of version 0.1.0 and before a vibrating wall stands at its mean place.
+    /// Logs written before walls were so have a vibrating wall at its mean place.
     pub lower: [f64; 3],
     /// Upper corner, likewise [length]; z = 0 in 2D.
     pub upper: [f64; 3],

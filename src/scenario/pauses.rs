@@ -10,9 +10,15 @@ use crate::space::Vector;
 const FIRST_PLACE: f64 = 1e-3;
 
 impl<V: Vector> Scenario<V> {
-    /// How long the run lasts [time]; `None` where that cannot be told.
+    /// How long the run lasts [time]; `None` where that cannot be told. Collisions of a gas that cools take as long as Haff's
+    /// law says.
     pub fn expected_duration(&self) -> Option<f64> {
-        cost::duration(self).filter(|duration| *duration > 0.0)
+        let RunLimits { time, steps, .. } = self.run;
+        let by_collisions = estimate::time_of_collisions(self);
+        let by_time =
+            [time, estimate::resting_time(self), by_collisions].into_iter().flatten().reduce(f64::min);
+        let duration = if steps.is_some() || by_time.is_none() { cost::duration(self) } else { None };
+        [by_time, duration].into_iter().flatten().reduce(f64::min).filter(|duration| *duration > 0.0)
     }
 
     /// The shortest pause between two recordings [time]; `None` where that cannot be told.
