@@ -4,6 +4,7 @@ pub mod beginning;
 pub mod folder;
 mod last_good;
 mod looks;
+mod older;
 mod recorder;
 mod rerun;
 pub mod resume;
