@@ -106,14 +106,16 @@ impl Resumption {
         let scenario = scenario_of(&log, &history, &history.scenario, &overrides)?;
         let changed = scenario.source_text() != history.scenario;
         let changes = if changed { sets.join("; ") } else { String::new() };
-        let mut state = match &scenario {
+        let state = match &scenario {
             AnyScenario::Two(_) => State::Two(last_state_and_place(&log)?),
             AnyScenario::Three(_) => State::Three(last_state_and_place(&log)?),
         };
-        let begun_anew = match (&scenario, &mut state) {
+        let begun_anew = match (&scenario, &state) {
             _ if older::observes_alike(history.value(OBSERVATION_KEY)) => Vec::new(),
-            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => older::forget(scenario, state),
-            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => older::forget(scenario, state),
+            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => older::begun_anew(scenario, state),
+            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => {
+                older::begun_anew(scenario, state)
+            }
             _ => Vec::new(),
         };
         let resumption = Resumption { log, history, scenario, state, begun_anew, changes };

@@ -215,7 +215,10 @@ impl<V: Vector> Check<'_, V> {
             }
             Checkpoint::State(state) => self.begin(&state).and_then(|()| {
                 let unlike = |misfit: Misfit| End::Different(misfit.to_string());
-                self.reach(state.time, self.rerun.is_interruption(&self.without_old_memories(&state)).map_err(unlike)?)?;
+                self.reach(
+                    state.time,
+                    self.rerun.is_interruption(&self.without_old_memories(&state)).map_err(unlike)?,
+                )?;
                 let compared = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
                     first_difference(&state, rerun, self.observes_alike)
                 });
