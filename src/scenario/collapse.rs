@@ -1,6 +1,6 @@
 //! Whether inelastic collapse may end an event-driven run.
 
-use super::bound::rounded;
+use super::bound::{rounded, shown};
 use super::cost;
 use super::estimate;
 use super::model::{Cure, Scenario};
@@ -11,19 +11,39 @@ use crate::space::Vector;
 
 /// A contact time that leaves a gas as it is, in mean times between collisions of a grain.
 const SHORT_IN_A_GAS: f64 = 1e-4;
+/// A speed that has ended in collapse, in those of [`resting_speed`]: 0.1 √(g d) in place of 0.3.
+const HAS_COLLAPSED: f64 = 0.34;
 /// A speed of a cure that leaves a gas between moving walls as it is, in speeds of the walls.
 const SLOW_BESIDE_WALLS: f64 = 1e-4;
 
 /// What to say of a run without a cure that collapse is likely to end.
 pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    if !scenario.engine.kind.is_event_driven() || is_cured(scenario) {
+    if !scenario.engine.kind.is_event_driven() {
         return None;
+    }
+    if is_cured(scenario) {
+        return too_slow(scenario);
     }
     let (reason, remedy) = danger(scenario)?;
     Some(format!(
         "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {} prevents it",
         written(remedy)
     ))
+}
+
+/// What to say of a speed with which runs under gravity have collapsed.
+fn too_slow<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
+    let tried = resting_speed(scenario.gravity.length(), scenario.largest_diameter());
+    let speed = scenario.engine.event_driven.cure.elastic_below?;
+    (cost::settles(scenario) && speed < HAS_COLLAPSED * tried).then(|| {
+        format!(
+            "engine.event_driven.collapse.elastic_below = {} may be too low under gravity: an inclined chute ended in collapse with \
+             {}, in units of √(g d), and ran to its end with twice as much; {} has been tried on chutes, beds and heaps",
+            shown(speed),
+            0.1,
+            one_digit(tried)
+        )
+    })
 }
 
 /// Whether the scenario has a cure that helps. A contact time is none for grains that lie on each other: they collide all the time.
@@ -140,5 +160,15 @@ mod tests {
         let law = "particles.restitution={law='velocity-dependent',r0=0.9,v0=1}";
         assert_eq!(warned("heap", &[law]), "");
         assert_eq!(warned("heap", &["particles.restitution=1"]), "");
+    }
+
+    #[test]
+    fn a_speed_with_which_runs_have_collapsed_is_said() {
+        let with = |speed: &str| warned("heap", &[&format!("engine.event_driven.collapse={{elastic_below={speed}}}")]);
+        assert!(with("0.1").contains("elastic_below = 0.1 may be too low"), "{}", with("0.1"));
+        assert!(with("0.1").contains("0.3 has been tried"), "{}", with("0.1"));
+        assert_eq!(with("0.2"), "");
+        // Driven gases have no weight to carry.
+        assert_eq!(warned("shear", &["engine.event_driven.collapse={elastic_below=1e-4}"]), "");
     }
 }
