@@ -220,7 +220,12 @@ fn check_tells_what_every_built_in_scenario_means() {
 fn built_in_scenarios_are_listed_and_shown() {
     let place = Place::new();
     let list = text(&place.grainflow(&["scenarios"]));
-    for fault in ["hsmc makes heaps too steep", "lets beds sink", "the stress of a driven flow", "once the gas clusters"] {
+    for fault in [
+        "hsmc makes heaps too steep",
+        "lets beds sink",
+        "the stress of a driven flow",
+        "once the gas clusters",
+    ] {
         assert!(list.contains(fault), "{fault}: {list}");
     }
     for (name, about) in builtin::list() {

@@ -33,9 +33,7 @@ impl Proposal {
 
     /// The options of the command line.
     pub(super) fn options(&self) -> String {
-        let cure = self.cure.map(|cure| {
-            format!(" --set 'engine.event_driven.collapse={}'", collapse::written(cure))
-        });
+        let cure = self.cure.map(|cure| format!(" --set 'engine.event_driven.collapse={cure}'"));
         format!("--engine event-driven{}", cure.unwrap_or_default())
     }
 }

@@ -134,9 +134,9 @@ fn hybrid_at_rest<V: Vector>(scenario: &Scenario<V>) -> Doubt {
 
 /// Whether nothing can leave across gravity.
 fn is_closed_sideways<V: Vector>(scenario: &Scenario<V>) -> bool {
-    (0..V::DIMENSION).filter(|&axis| scenario.gravity[axis] == 0.0).all(|axis| {
-        scenario.boundary.faces(axis).is_none_or(|faces| !faces.contains(&Face::Open))
-    })
+    (0..V::DIMENSION)
+        .filter(|&axis| scenario.gravity[axis] == 0.0)
+        .all(|axis| scenario.boundary.faces(axis).is_none_or(|faces| !faces.contains(&Face::Open)))
 }
 
 /// A gas that nothing feeds, for so long that it clusters.

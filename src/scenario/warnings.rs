@@ -90,7 +90,10 @@ mod tests {
         let long = ["particles.restitution=0.8", "run={collisions_per_particle=100}"];
         let said = warned("cooling", &[dilute, long].concat());
         // 1/(2 √2 n d χ) with n = 0.05/(π/4) and χ = (1 − 7ν/16)/(1 − ν)².
-        assert!(said.contains("cells of 14.77 are longer than the mean free path 5.124: cells near it"), "{said}");
+        assert!(
+            said.contains("cells of 14.77 are longer than the mean free path 5.124: cells near it"),
+            "{said}"
+        );
         let short = warned("cooling", &[&dilute[..], &long[..], &["engine.cell_size=5"]].concat());
         assert!(short.contains("once the gas clusters") && !short.contains("mean free path"), "{short}");
         let others = ["run={collisions_per_particle=2}", "particles.restitution=1"];
@@ -106,7 +109,12 @@ mod tests {
         let said = warned("heap", &["source.count=600"]);
         assert!(said.contains("hsmc makes heaps too steep"), "{said}");
         assert!(said.contains("exact dynamics takes up to"), "{said}");
-        assert!(said.contains("--set 'engine.event_driven.collapse={ elastic_below = 0.3 }'"), "{said}");
+        assert!(
+            said.contains(
+                "--set 'engine.event_driven.collapse={ elastic_below = 0.3, contact_time = 1e-5 }'"
+            ),
+            "{said}"
+        );
         // Beyond some 10⁵ grains nothing is proposed.
         assert!(!warned("heap", &["source.count=200000"]).contains("exact dynamics takes"));
         assert!(!warned("heap", &["engine.kind=event-driven"]).contains("too steep"));
@@ -133,7 +141,9 @@ mod tests {
     #[test]
     fn a_vibrating_wall_that_may_reach_nothing_is_said() {
         let shaken = |amplitude: &str| {
-            let wall = format!("boundary.y={{lower={{wall='vibrating',amplitude={amplitude},frequency=1}},upper='open'}}");
+            let wall = format!(
+                "boundary.y={{lower={{wall='vibrating',amplitude={amplitude},frequency=1}},upper='open'}}"
+            );
             warned("shear", &["initial.velocities=rest", "run={time=10}", &wall])
         };
         // 2037 grains over a height of 40: 0.05 of them within 10⁻³.

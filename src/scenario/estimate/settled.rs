@@ -7,7 +7,7 @@
 //! k = 6 … 30 was measured (3D, 9 layers, V = 0.3 to 13 √(g d), r = 0.9 and 0.6; more for the lower r).
 
 use super::{Estimate, resting_time};
-use crate::engine::event_driven::rules::resting_speed;
+use crate::engine::event_driven::rules::Cure;
 use crate::law::boundary::Face;
 use crate::scenario::cost;
 use crate::scenario::model::Scenario;
@@ -41,11 +41,8 @@ pub(super) fn collisions<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> 
 fn frequency<V: Vector>(scenario: &Scenario<V>, grains: f64) -> Option<(f64, f64)> {
     let cure = scenario.engine.event_driven.cure;
     let diameter = scenario.largest_diameter();
-    let slow = match (cure.elastic_below, cure.contact_time) {
-        (Some(speed), _) => speed,
-        (None, Some(_)) => return None,
-        (None, None) => resting_speed(scenario.gravity.length(), diameter),
-    };
+    let tried = Cure::at_rest(scenario.gravity.length(), diameter);
+    let slow = cure.elastic_below.or(tried.elastic_below.filter(|_| cure == Cure::default()))?;
     let axis = (0..V::DIMENSION).find(|&axis| cost::settles_along(scenario, axis))?;
     let fall = (scenario.gravity.length() * diameter).sqrt();
     let shaken = (scenario.boundary.largest_wall_speed() * fall).sqrt();
@@ -98,10 +95,11 @@ mod tests {
     use crate::scenario::parse;
 
     fn estimate(text: &str) -> Estimate {
-        let found = match parse("settled", text, &Default::default()).unwrap_or_else(|error| panic!("{error}")) {
-            AnyScenario::Two(scenario) => collisions(&scenario),
-            AnyScenario::Three(scenario) => collisions(&scenario),
-        };
+        let found =
+            match parse("settled", text, &Default::default()).unwrap_or_else(|error| panic!("{error}")) {
+                AnyScenario::Two(scenario) => collisions(&scenario),
+                AnyScenario::Three(scenario) => collisions(&scenario),
+            };
         found.unwrap()
     }
 
@@ -154,7 +152,10 @@ time = {time:?}
     #[test]
     fn a_heap_collides_as_often_as_measured() {
         let text = include_str!("../../../scenarios/heap.toml")
-            .replace("kind = \"hsmc\"", "kind = \"event-driven\"\nevent_driven.collapse = { elastic_below = 0.1 }")
+            .replace(
+                "kind = \"hsmc\"",
+                "kind = \"event-driven\"\nevent_driven.collapse = { elastic_below = 0.1 }",
+            )
             .replace("count = 3000", "count = 1000")
             .replace("rest = 400.0", "rest = 100.0");
         holds(estimate(&text), 1.72e8, 2.0);
@@ -186,9 +187,13 @@ time = 100
 "#
             ))
         };
-        for (amplitude, restitution, measured) in
-            [(0.05, 0.6, 1.21e7), (0.05, 0.9, 6.24e6), (0.5, 0.6, 5.26e6), (0.5, 0.9, 1.64e6), (2.0, 0.6, 3.77e6)]
-        {
+        for (amplitude, restitution, measured) in [
+            (0.05, 0.6, 1.21e7),
+            (0.05, 0.9, 6.24e6),
+            (0.5, 0.6, 5.26e6),
+            (0.5, 0.9, 1.64e6),
+            (2.0, 0.6, 3.77e6),
+        ] {
             holds(shaken(amplitude, restitution), measured, 5.1);
         }
     }

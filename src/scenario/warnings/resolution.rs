@@ -20,10 +20,7 @@ pub(super) fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     if scenario.engine.kind.is_event_driven() {
         return Vec::new();
     }
-    [noisy_factor(scenario), small_capacity(scenario), full_cells(scenario)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [noisy_factor(scenario), small_capacity(scenario), full_cells(scenario)].into_iter().flatten().collect()
 }
 
 /// The local Enskog factor of too few grains.
