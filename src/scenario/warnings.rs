@@ -81,7 +81,7 @@ mod tests {
         for quiet in ["hard-spheres", "simic-cooling"] {
             assert_eq!(warned(quiet, &[]), "", "{quiet}");
         }
-        assert_eq!(warned("cooling", &["run={collisions_per_particle=5}"]), "");
+        assert_eq!(warned("cooling", &["run={collisions_per_particle=5}", "record.frames=10"]), "");
     }
 
     #[test]
@@ -125,10 +125,13 @@ mod tests {
         // Few grains per cell call for larger cells, walls that move for smaller ones: between these only one is said.
         for sets in [&[][..], &["engine.cell_size=8"], &["engine.cell_size=2"]] {
             let said = warned("shear", sets);
-            assert!(!said.contains("enlarge"), "{said}");
+            assert!(!said.contains("enlarge engine.cell_size"), "{said}");
             assert!(said.contains("makes the stress of driven flows too high"), "{said}");
         }
-        assert!(warned("cooling", &["engine.kind=cba", "engine.cell_size=3"]).contains("enlarge"));
+        assert!(
+            warned("cooling", &["engine.kind=cba", "engine.cell_size=3"])
+                .contains("enlarge engine.cell_size")
+        );
     }
 
     #[test]
@@ -219,7 +222,7 @@ mod tests {
 
     #[test]
     fn memory_and_disk_are_compared_with_what_is_free() {
-        let clustering = scenario("clustering", &["run.time=20"]);
+        let clustering = scenario("clustering", &["run.time=20", "record.frames=100"]);
         let warnings = |memory, disk| check_on(&clustering, Machine { memory, disk }).warnings;
         assert!(warnings(Some(16_000_000_000), Some(16_000_000_000)).is_empty());
         let said = warnings(Some(50_000_000), None);

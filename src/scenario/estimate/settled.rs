@@ -8,7 +8,6 @@
 
 use super::{Estimate, resting_time};
 use crate::engine::event_driven::rules::Cure;
-use crate::law::boundary::Face;
 use crate::scenario::cost;
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
@@ -54,16 +53,13 @@ fn frequency<V: Vector>(scenario: &Scenario<V>, grains: f64) -> Option<(f64, f64
     Some((least * load / if is_tilted { HEATED_BY_FLOW } else { 1.0 }, most * load))
 }
 
-/// Weight that a grain carries on an average, in grains: half of what stands on the floor per grain's width, or that of a heap
-/// where grains can spread.
+/// Weight that a grain carries on an average, in grains: half of what stands on the floor per grain's width, or that of a heap.
 fn load<V: Vector>(scenario: &Scenario<V>, axis: usize, grains: f64) -> f64 {
     let diameter = scenario.mean_grain().diameter;
     let floor = scenario.size.product() / scenario.size[axis] / diameter.powi(V::DIMENSION as i32 - 1);
     let bed = 0.5 * grains / floor;
-    let is_open = (0..V::DIMENSION)
-        .filter(|&other| other != axis)
-        .any(|other| scenario.boundary.faces(other).is_some_and(|faces| faces.contains(&Face::Open)));
-    if scenario.source.is_none() && !is_open {
+    // What is poured onto one place lies higher than it would spread, until it meets walls.
+    if scenario.source.is_none() {
         return bed;
     }
     // A cone of height h and slope s has the volume B_{D−1} (h/s)^{D−1} h/D, B_{D−1} that of the ball of radius 1 below it: 2 on a
@@ -71,7 +67,7 @@ fn load<V: Vector>(scenario: &Scenario<V>, axis: usize, grains: f64) -> f64 {
     let dimension = V::DIMENSION as f64;
     let volume = grains * V::UNIT_SPHERE_VOLUME / V::RANDOM_CLOSE_PACKING;
     let unit = V::cross_section(1.0) / dimension / SLOPE.powi(V::DIMENSION as i32 - 1);
-    bed.min((volume / unit).powf(1.0 / dimension) / (dimension + 1.0))
+    bed.max((volume / unit).powf(1.0 / dimension) / (dimension + 1.0))
 }
 
 /// Time that grains would have to lie, all of them, for as many collisions: while they are poured fewer lie, and less high [time].
