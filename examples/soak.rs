@@ -4,6 +4,7 @@
 //! ```sh
 //! cargo run --release --example soak -- --cases 1000 --seed 1
 //! cargo run --release --example soak -- --minutes 3
+//! cargo run --release --example soak -- --gravity 400
 //! cargo run --release --example soak -- --long
 //! cargo run --release --example soak -- --fuzz log --cases 1000000
 //! ```
@@ -14,6 +15,10 @@
 mod case;
 #[path = "../tests/soak/draw.rs"]
 mod draw;
+#[path = "../tests/soak/gravity.rs"]
+mod gravity;
+#[path = "../tests/soak/gravity_text.rs"]
+mod gravity_text;
 #[path = "../tests/soak/hostile.rs"]
 mod hostile;
 #[path = "../tests/soak/laws.rs"]
@@ -66,6 +71,10 @@ struct Arguments {
     #[arg(long)]
     show: bool,
 
+    /// So many runs under gravity, each gone on with from every state of its log, in place of small scenarios
+    #[arg(long, value_name = "N", conflicts_with_all = ["cases", "minutes"])]
+    gravity: Option<u64>,
+
     /// Runs of a million steps and of a hundred million events, in place of small scenarios
     #[arg(long)]
     long: bool,
@@ -82,13 +91,15 @@ struct Arguments {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.show && arguments.fuzz.is_none() {
-        print!("{}", draw::scenario_text(arguments.seed, draw::Units::ONE));
+        let gravity = arguments.gravity.map(|_| gravity_text::drawn(arguments.seed).text);
+        print!("{}", gravity.unwrap_or_else(|| draw::scenario_text(arguments.seed, draw::Units::ONE)));
         return ExitCode::SUCCESS;
     }
-    let failures = match (&arguments.fuzz, arguments.long) {
-        (Some(target), _) => fuzz(&arguments, target),
-        (None, true) => long_runs(arguments.share),
-        (None, false) => scenarios(&arguments),
+    let failures = match (&arguments.fuzz, arguments.gravity, arguments.long) {
+        (Some(target), ..) => fuzz(&arguments, target),
+        (None, Some(runs), _) => under_gravity(arguments.seed, runs),
+        (None, None, true) => long_runs(arguments.share),
+        (None, None, false) => scenarios(&arguments),
     };
     if failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
@@ -119,6 +130,27 @@ fn scenarios(arguments: &Arguments) -> u64 {
         tally.held,
         tally.refused,
         tally.collisions,
+        since.elapsed().as_secs_f64()
+    );
+    failures
+}
+
+fn under_gravity(first: u64, runs: u64) -> u64 {
+    let since = Instant::now();
+    let (mut tally, mut failures) = (gravity::Tally::default(), 0);
+    for seed in first..first.saturating_add(runs) {
+        if let Err(problem) = gravity::trial(seed, &mut tally) {
+            eprintln!("{problem}\n");
+            failures += 1;
+        }
+        if failures == MOST_FAILURES {
+            break;
+        }
+    }
+    let gravity::Tally { runs, states, failed, stopped, outrun, refused } = tally;
+    println!(
+        "{runs} runs under gravity held, {refused} refused, {failures} failed; {states} states, {outrun} of them with a grain \
+         faster than the speed that sets the step; {failed} runs ended by a failure, {stopped} were stopped; {:.0} s",
         since.elapsed().as_secs_f64()
     );
     failures

@@ -1,6 +1,18 @@
 //! Means with their errors, and straight lines through points: always the same bits for the same numbers.
 
+mod long_run;
+#[cfg(test)]
+mod series;
+mod steadiness;
+mod steady;
+#[cfg(test)]
+#[path = "statistics/steady_tests.rs"]
+mod steady_tests;
+pub mod student;
+
 use std::ops::Range;
+
+pub use steady::SteadyEstimate;
 
 /// Blocks that a steady stretch of a run is cut into.
 pub const BLOCKS: usize = 10;
@@ -36,6 +48,18 @@ impl Trend {
             Trend::Falling => "falling",
             Trend::Wandering => "wandering",
         }
+    }
+
+    /// The trend of that name; `None` where there is none.
+    pub fn of_name(name: &str) -> Option<Trend> {
+        [Trend::Steady, Trend::Rising, Trend::Falling, Trend::Wandering]
+            .into_iter()
+            .find(|trend| trend.name() == name)
+    }
+
+    /// Whether it is steady.
+    pub fn is_steady(self) -> bool {
+        self == Trend::Steady
     }
 }
 

@@ -19,7 +19,6 @@ mod read;
 mod scatter;
 mod series;
 mod stability;
-mod student;
 #[cfg(test)]
 mod testing;
 pub mod theory;

@@ -10,7 +10,7 @@ use crate::record::LOG;
 use crate::record::contents::RunLog;
 use crate::record::error::LogError;
 use crate::record::reader::read_log;
-use crate::record::summary::{SummaryError, summary_beside};
+use crate::record::summary::{SummaryError, failure, summary_beside};
 use crate::scenario::{Overrides, parse};
 
 /// What logs must have in common: key of the metadata, and its name in a message.
@@ -111,8 +111,18 @@ fn entry(path: &Path) -> Result<Entry, LogsError> {
     let diameter = parse("log", &log.scenario, &Overrides::default()).map_or(1.0, |one| one.diameter());
     let summary = summary_beside(&file)?;
     let folder = path.display().to_string();
+    let failure = summary.as_ref().and_then(failure).map(failed);
+    // Figures of a run that has no end are not those of its scenario.
+    let summary = summary.filter(|_| failure.is_none());
     let run = Replica { number: 1, folder: folder.clone(), log, summary };
-    Ok(Entry { label: folder, engine, runs: vec![run], failures: Vec::new(), was_alone: true, diameter })
+    let failures = failure.into_iter().collect();
+    Ok(Entry { label: folder, engine, runs: vec![run], failures, was_alone: true, diameter })
+}
+
+/// What is compared of a run that failed, and `why` it did.
+fn failed(why: &str) -> String {
+    let why = why.lines().next().unwrap_or_default();
+    format!("the run failed ({why}); its recordings are compared as far as they go, its figures are not")
 }
 
 /// A remark where the scenario of a log cannot be read: its grains are then drawn with a diameter that nobody gave.

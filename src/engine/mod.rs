@@ -92,7 +92,8 @@ impl Laps for NoLaps {
 pub struct EngineState {
     /// Steps made: names the random streams and flips the checkerboard.
     pub step: u64,
-    /// Largest speed after the last step [length/time], or −1 when it has to be measured.
+    /// Largest speed at the end of a flight of the last step [length/time], or −1 when it has to be measured. The length of the
+    /// next step follows from it. Grains whose moves were rejected after their flight may be faster.
     pub largest_speed: f64,
     /// Collisions per time of the whole gas that the next step expects [1/time], or −1.
     pub collision_rate: f64,

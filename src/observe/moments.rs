@@ -66,6 +66,11 @@ pub fn mean_speed<V: Vector>(gas: &Gas<V>) -> f64 {
     if gas.is_empty() { 0.0 } else { speeds / gas.len() as f64 }
 }
 
+/// Speed of the fastest grain [length/time]; zero without grains.
+pub fn largest_speed<V: Vector>(velocities: &[V]) -> f64 {
+    velocities.iter().map(|velocity| velocity.length_squared()).fold(0.0, f64::max).sqrt()
+}
+
 /// Granular temperature ⟨m|v − v̄|²⟩/D about the velocity v̄ of the centre of mass of all grains
 /// [mass·length²/time²]; zero without grains.
 pub fn temperature<V: Vector>(gas: &Gas<V>) -> f64 {
@@ -163,6 +168,7 @@ mod tests {
         assert_eq!(momentum(&gas), DVec2::new(8.0, 8.0));
         assert_eq!(momentum_scale(&gas), 12.0);
         assert_eq!(mean_velocity(&gas), DVec2::new(2.0, 2.0));
+        assert_eq!((largest_speed(gas.velocities()), largest_speed::<DVec2>(&[])), (5.0, 0.0));
         // |v − v̄|² = 5 each; 2 · 10 / (2 · 2).
         assert_eq!(temperature(&gas), 5.0);
     }

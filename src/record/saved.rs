@@ -104,6 +104,7 @@ impl<V: Vector> Assembly<V> {
 
 fn add_sums<V: Vector>(message: &mut State, state: &SavedState<'_, V>) {
     message.next_id = state.next_id;
+    message.largest_speed = state.largest_speed;
     message.engine = Some(Engine {
         step: state.engine.step,
         largest_speed: Some(state.engine.largest_speed),
@@ -137,6 +138,7 @@ fn sums_of<V: Vector>(part: &State) -> Option<SavedState<'static, V>> {
             species: part.species.is_some().then(Vec::new),
             ..Columns::default()
         }),
+        largest_speed: part.largest_speed,
         next_id: part.next_id,
         engine: EngineState {
             step: engine.step,

@@ -20,6 +20,9 @@ pub struct SavedState<'a, V: Vector> {
     pub compensation: f64,
     /// Grains in container order: those of a running gas on the way into a log, owned on the way out.
     pub columns: Cow<'a, Columns<V>>,
+    /// Largest speed of these grains [length/time], by which a state is known to be whole; `None` in logs that have none. The
+    /// speed that the length of the next step follows from is the engine's.
+    pub largest_speed: Option<f64>,
     /// The next identity to be given.
     pub next_id: u32,
     /// What the engine remembers.
@@ -57,7 +60,20 @@ pub struct Beginning<V> {
     pub momentum_scale: f64,
 }
 
+/// A measure that every run has and that samples.
+const COLLISIONS: &str = "collisions";
+/// Samples of versions that took 400 at even places of a run have numbers from 1 to 401; later ones are 0 or above this.
+const LARGEST_EVEN_SAMPLE: u64 = 401;
+
 impl<V: Vector> SavedState<'_, V> {
+    /// Whether its measures sampled at even places of the run, as versions before the one with random places did.
+    pub fn has_even_samples(&self) -> bool {
+        self.memories
+            .iter()
+            .zip(&self.samples)
+            .any(|((name, _), number)| name == COLLISIONS && (1..=LARGEST_EVEN_SAMPLE).contains(number))
+    }
+
     /// Takes the gas of this state out of it, into the box of `grid`.
     pub fn take_gas(&mut self, grid: Grid<V>, grain: Grain) -> Gas<V> {
         let clock = Clock::restored(self.time, self.compensation);

@@ -7,6 +7,16 @@ use serde_json::{Map, Value};
 /// What the summary of a run is called in the run's folder.
 pub const SUMMARY: &str = "summary.json";
 
+/// The `end_reason` of a run that could not go on.
+pub const FAILED: &str = "failed";
+
+/// Why the run of `summary` could not go on; `None` where it could.
+pub fn failure(summary: &Map<String, Value>) -> Option<&str> {
+    let has_failed = summary.get("end_reason").and_then(Value::as_str) == Some(FAILED);
+    has_failed
+        .then(|| summary.get("failure").and_then(Value::as_str).unwrap_or("the summary does not say why"))
+}
+
 /// A summary that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {reason}", path.display())]

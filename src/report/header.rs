@@ -7,11 +7,12 @@ use serde_json::Value;
 use super::escape::escape;
 use super::evidence::Evidence;
 use super::figures;
-use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
 use super::reference::{Reference, references};
 use super::setup::Setup;
+use crate::number::{NOT_STEADY, count, in_words, number, with_error};
 use crate::observe::measure::Dimension;
+use crate::record::summary::failure;
 use crate::scenario::trust;
 
 /// Title, sentence, figures.
@@ -24,6 +25,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
         escape(&setup.title),
         escape(&sentence(evidence)),
     );
+    html.push_str(&failure_words(evidence));
     if evidence.summary.get("interrupted") == Some(&Value::Bool(true)) {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
@@ -44,6 +46,20 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
     }
     html.push_str("</header>\n");
     html
+}
+
+/// That the run failed, when, why, and what to do; nothing where it did not.
+fn failure_words(evidence: &Evidence<'_>) -> String {
+    let Some(why) = failure(evidence.summary) else { return String::new() };
+    let when = evidence.figure("simulated_time").map_or_else(String::new, |time| {
+        format!(" after t = {} {}", number(time, 6), evidence.setup.named(2)).trim_end().to_owned()
+    });
+    format!(
+        "<p class=\"warning\"><b>This run failed{}.</b> {}<br>Everything on this page is of the run up to then; the log holds its \
+         last state before the failure.</p>\n",
+        escape(&when),
+        escape(why).replace('\n', "<br>"),
+    )
 }
 
 /// Where the engine is known to be wrong, before the figures that it concerns.
@@ -128,9 +144,14 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Reference]) -> String
         references.iter().find(|r| r.figure == name).map(|r| format!("expected {}", r.expected.text())),
     );
     notes.extend(figures::known_faults(evidence, name));
+    let unit = figures::unit_of(evidence, name);
+    if let Some(trend) = evidence.unsteady(name) {
+        let told = format!("{}, mean {} {unit}", trend.name(), number(value, 3));
+        return entry(&in_words(name), NOT_STEADY, "", &notes, Some(told.trim_end()));
+    }
     let text = with_error(value, evidence.standard_error(name));
     let doubt = figures::doubt(evidence, name);
-    entry(&in_words(name), &text, &figures::unit_of(evidence, name), &notes, doubt.as_deref())
+    entry(&in_words(name), &text, &unit, &notes, doubt.as_deref())
 }
 
 /// t₀ is no figure of the summary: it is fitted here.
@@ -165,7 +186,8 @@ fn facts(evidence: &Evidence<'_>) -> String {
         ("simulated_time", "simulated time", evidence.setup.named(2)),
         ("resumed_at", "resumed at", evidence.setup.named(2)),
         ("collisions_per_particle", "collisions per particle", String::new()),
-        ("temperature", "granular temperature at the end", energy),
+        ("granular_temperature", "granular temperature at the end, about the local flow", energy.clone()),
+        ("temperature", "temperature at the end, about the mean of all grains", energy),
         ("wall_seconds", "computing time", "s".to_owned()),
     ];
     let entries = facts.iter().filter_map(|(key, title, unit)| {

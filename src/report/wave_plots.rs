@@ -3,9 +3,9 @@
 use super::axis::Scale;
 use super::colour::ColourMap;
 use super::evidence::{Evidence, points, spread, values};
-use super::number::{number, with_error};
 use super::plot::{Curve, Field, Ink, Plot, Stroke};
 use super::raster::Raster;
+use crate::number::{number, with_error};
 use crate::observe::measure::Profile;
 
 /// Name of the profile of every recording.

@@ -10,21 +10,19 @@ use super::timetable::Timetable;
 use crate::engine::{Horizon, NoLaps};
 use crate::observe::measure::Place;
 use crate::record::reader::last_state;
-use crate::record::state::SavedState;
 use crate::scenario::model::Scenario;
 use crate::simulation::Simulation;
 use crate::space::Vector;
 
-/// Comes to the state at `place` once more, from the last one in the `log` or from the start where there is none, and gives
-/// it to `save`: a step changes the grains where they stand, and one that fails leaves no way back. `None` where `stop` turned
-/// true on the way, or where the way does not lead there.
-pub(super) fn last_good<V: Vector, R>(
-    scenario: &Scenario<V>,
+/// Comes to the state at `place` once more, from the last one in the `log` or from the start where there is none: a step
+/// changes the grains where they stand, and one that fails leaves no way back. `None` where `stop` turned true on the way, or
+/// where the way does not lead there.
+pub(super) fn last_good<'s, V: Vector>(
+    scenario: &'s Scenario<V>,
     log: &Path,
     place: Place,
     stop: &AtomicBool,
-    save: impl FnOnce(&SavedState<'_, V>) -> R,
-) -> Option<R> {
+) -> Option<Simulation<'s, V>> {
     let mut run = begin(scenario, log)?;
     let there = Horizon { time: place.time, ..Horizon::NONE };
     loop {
@@ -46,9 +44,9 @@ pub(super) fn last_good<V: Vector, R>(
         let horizon = run.timetable.horizon(&run.simulation).min(there);
         run.simulation.advance(&mut NoLaps, horizon).ok()?;
     }
-    let Running { simulation, timetable, .. } = &mut run;
+    let mut simulation = run.simulation;
     let is_there = simulation.observation().1.place() == place;
-    is_there.then(|| save(&simulation.saved_state(timetable.recordings, timetable.saved)))
+    is_there.then_some(simulation)
 }
 
 fn begin<'s, V: Vector>(scenario: &'s Scenario<V>, log: &Path) -> Option<Running<'s, V>> {

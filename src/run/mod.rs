@@ -19,6 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use serde_json::{Map, Value};
 
+use crate::engine::EngineError;
 use crate::observe::measure::Place;
 use crate::observe::moments;
 use crate::placing::write_whole;
@@ -28,16 +29,23 @@ use crate::record::summary::SUMMARY;
 use crate::record::{LOG, log_at};
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
-use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use crate::scenario::model::{AnyScenario, InitialPositions, Scenario, Units};
 use crate::simulation::{Simulation, SimulationError};
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
 use folder::{FolderError, REPORT, RunFolder};
-use recorder::Recorder;
+use recorder::{Recorded, Recorder};
 use summary::Ending;
 
 /// Raised whenever a release changes the bits of a trajectory.
 pub const NUMERICS: u32 = 2;
+
+/// Raised whenever a release changes what is observed beside the grains, sums and measures, and no trajectory. Verification
+/// compares these between logs of one number alone. Logs that do not say it are of number 1; since 2 a wall is given what it
+/// carries while grains rest on it.
+pub const OBSERVATION: u32 = 2;
+/// Where a log says it.
+const OBSERVATION_KEY: &str = "observation";
 
 /// Why a run could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]
@@ -71,20 +79,41 @@ pub enum RunError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// The simulation cannot go on. The log holds everything up to here.
-    #[error("{source}\nthe log up to this time is {}{}", log.display(), last_state_words(*state))]
+    /// The simulation cannot go on. The run folder holds everything up to here.
+    #[error(
+        "{source}\nthe log up to this time is {}{}{}", log.display(), last_state_words(*state),
+        continuation(source, log, *state).map_or_else(String::new, |words| format!("\n{words}"))
+    )]
     Simulation {
         /// What happened.
         source: SimulationError,
         /// The log.
         log: PathBuf,
-        /// When its last state was, that before the step which failed [time]; `None` where it could not be found again.
+        /// When its last state was, that before the step which failed [time]: report and summary are of the run up to there.
+        /// `None` where it could not be found again; then there are none.
         state: Option<f64>,
     },
 }
 
 fn last_state_words(state: Option<f64>) -> String {
-    state.map_or_else(String::new, |time| format!(", with the state before that, at t = {time}"))
+    let words = |time| {
+        format!(
+            ", with the state before that, at t = {time}; {REPORT} and {SUMMARY} beside it show the run up to there"
+        )
+    };
+    state.map_or_else(String::new, words)
+}
+
+/// How a run that `source` has ended goes on from the last `state` of its `log`, where another cure of collapse lets it.
+fn continuation(source: &SimulationError, log: &Path, state: Option<f64>) -> Option<String> {
+    let SimulationError::Engine(EngineError::Collapse { cure, value, .. }) = source else { return None };
+    state?;
+    let folder = log.parent().unwrap_or(Path::new("."));
+    Some(format!(
+        "with a cure it goes on from that state:\n  grainflow run --resume '{}' --set \
+         'engine.event_driven.collapse={{ {cure} = {value:.1e} }}'",
+        folder.display()
+    ))
 }
 
 impl RunError {
@@ -125,6 +154,8 @@ pub struct Outcome {
     pub folder: PathBuf,
     /// The summary.
     pub summary: Map<String, Value>,
+    /// Names of its units.
+    pub units: Units,
     /// Whether somebody stopped the run before its end.
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
@@ -187,32 +218,76 @@ impl<V: Vector> Run<'_, V> {
     /// Goes on until an end is reached or `stop` turns true, and writes all files.
     fn end_and_write(self, stop: &AtomicBool, tell: Listener<'_>) -> Result<Outcome, RunError> {
         let Run { folder, mut simulation, mut recorder, mut watch } = self;
-        let log = log_of(&folder);
         let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
         watch.stop();
         let ending = match ended {
             Ok(ending) => ending,
             Err(StepError::Log(error)) => return Err(error.into()),
             Err(StepError::Simulation(source, before)) => {
-                let has_state = recorder.finish_after_failure(simulation.scenario(), before, stop)?;
-                return Err(RunError::Simulation { source, log, state: has_state.then_some(before.time) });
+                let failed = Failed { source, before };
+                return Err(failed.write(&folder, &simulation, recorder, &watch, stop)?);
             }
         };
         let recorded = recorder.finish(&mut simulation)?;
-        simulation.audit();
-        let summary = summary::summary(&simulation, ending, &watch, &recorded.figures);
-        series::write_tables(folder.path(), simulation.scenario(), &recorded)?;
-        write_text(&folder.path().join(REPORT), &report::render(&read_log(&log)?, &summary))?;
-        // The last one: where it stands, the run is complete.
-        write_text(&folder.path().join(SUMMARY), &(pretty(&summary) + "\n"))?;
+        let summary = write_files(&folder, &mut simulation, ending, &watch, &recorded)?;
         let folder = folder.settle()?;
+        let units = simulation.scenario().units.clone();
         Ok(Outcome {
             folder,
             summary,
+            units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
         })
     }
+}
+
+/// A step that could not be made, and where the run was before it.
+struct Failed {
+    source: SimulationError,
+    before: Place,
+}
+
+impl Failed {
+    /// Ends log, tables, summary and report at the state before the step. The error of the run, or that of writing.
+    fn write<V: Vector>(
+        self,
+        folder: &RunFolder,
+        simulation: &Simulation<'_, V>,
+        recorder: Recorder,
+        watch: &Stopwatch,
+        stop: &AtomicBool,
+    ) -> Result<RunError, RunError> {
+        let Failed { source, before } = self;
+        let log = log_of(folder);
+        let last = recorder.finish_after_failure(simulation.scenario(), before, stop)?;
+        let state = last.is_some().then_some(before.time);
+        if let Some((recorded, there)) = last {
+            let mut there = there.in_place_of(simulation.resumed());
+            let continuation = continuation(&source, &log, state);
+            let why =
+                [Some(source.to_string()), continuation].into_iter().flatten().collect::<Vec<_>>().join("\n");
+            write_files(folder, &mut there, Ending::Failed(&why), watch, &recorded)?;
+        }
+        Ok(RunError::Simulation { source, log, state })
+    }
+}
+
+/// Writes what stands beside the log: tables, report, and at last the summary, which it returns.
+fn write_files<V: Vector>(
+    folder: &RunFolder,
+    simulation: &mut Simulation<'_, V>,
+    ending: Ending<'_>,
+    watch: &Stopwatch,
+    recorded: &Recorded,
+) -> Result<Map<String, Value>, RunError> {
+    simulation.audit();
+    let summary = summary::summary(simulation, ending, watch, &recorded.figures);
+    series::write_tables(folder.path(), simulation.scenario(), recorded)?;
+    write_text(&folder.path().join(REPORT), &report::render(&read_log(&log_of(folder))?, &summary))?;
+    // The last one: where it stands, the folder is complete.
+    write_text(&folder.path().join(SUMMARY), &(pretty(&summary) + "\n"))?;
+    Ok(summary)
 }
 
 /// Why a step or its recording failed.
@@ -229,7 +304,7 @@ fn go_on<V: Vector>(
     watch: &mut Stopwatch,
     stop: &AtomicBool,
     tell: Listener<'_>,
-) -> Result<Ending, StepError> {
+) -> Result<Ending<'static>, StepError> {
     use crate::engine::{Horizon, Laps};
     let mut stops = false;
     loop {

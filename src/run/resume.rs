@@ -24,8 +24,9 @@ use crate::simulation::limits::EndReason;
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
 
-/// Tables of a scenario that may change when its run goes on.
-const MAY_CHANGE: [&str; 2] = ["run", "record"];
+/// What of a scenario may change when its run goes on, as paths of keys: its end, what is recorded, and the cure of inelastic
+/// collapse, without which some runs could not go on at all.
+const MAY_CHANGE: [&[&str]; 3] = [&["run"], &["record"], &["engine", "event_driven", "collapse"]];
 
 /// Why the run of a log cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -38,8 +39,8 @@ pub enum ResumeError {
     Scenario(#[from] ScenarioError),
     /// A change of something that has to stay.
     #[error(
-        "{0}: a run that goes on keeps its scenario; only run.* and record.* may change with --set; for anything else \
-         begin a new run, from the grains of this one with initial.positions = {{ log = \"…\" }}"
+        "{0}: a run that goes on keeps its scenario; only run.*, record.* and engine.event_driven.collapse may change \
+         with --set; for anything else begin a new run, from the grains of this one with initial.positions = {{ log = \"…\" }}"
     )]
     Change(String),
     /// Another version made the bits.
@@ -217,8 +218,8 @@ pub(super) fn unfit(log: &Path, misfit: &Misfit) -> LogError {
 /// Whether `--set` may change this key.
 fn may_change(set: &str) -> bool {
     let key = set.split('=').next().unwrap_or_default();
-    let table = key.split(['.', '[']).next().unwrap_or_default().trim();
-    MAY_CHANGE.contains(&table)
+    let path: Vec<&str> = key.split(['.', '[']).map(str::trim).collect();
+    MAY_CHANGE.iter().any(|free| path.starts_with(free))
 }
 
 /// The scenario of `text` in the `log`, with `overrides`.

@@ -8,6 +8,7 @@ use crate::machine::peak_memory_bytes;
 use crate::matter::state_hash::state_hash;
 use crate::observe::measure::Figure;
 use crate::observe::moments;
+use crate::record::summary::FAILED;
 use crate::simulation::Simulation;
 use crate::simulation::figures::{DEGREES_OF_FREEDOM, STANDARD_ERROR, STEADY, TREND, is_of_every_run};
 use crate::simulation::limits::EndReason;
@@ -17,9 +18,11 @@ use crate::stopwatch::Stopwatch;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ending {
+pub(super) enum Ending<'a> {
     Reached(EndReason),
     Interrupted,
+    /// It could not go on, and why.
+    Failed(&'a str),
 }
 
 /// Verbs that do not advance the state.
@@ -28,7 +31,7 @@ const NOT_ADVANCING: [&str; 3] = ["recording", "measures", "synchronise"];
 /// The summary of a run that has ended. What does not apply is null.
 pub(super) fn summary<V: Vector>(
     simulation: &Simulation<'_, V>,
-    ending: Ending,
+    ending: Ending<'_>,
     watch: &Stopwatch,
     figures: &[Figure],
 ) -> Map<String, Value> {
@@ -84,11 +87,16 @@ fn mean_volume<V: Vector>(simulation: &Simulation<'_, V>) -> f64 {
     moments::volume(gas) / gas.len() as f64
 }
 
-fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> Map<String, Value> {
+fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending<'_>) -> Map<String, Value> {
     let (gas, totals) = (simulation.gas(), simulation.totals());
     let end_reason = match ending {
         Ending::Reached(reason) => reason.name(),
         Ending::Interrupted => "interrupted",
+        Ending::Failed(_) => FAILED,
+    };
+    let failure = match ending {
+        Ending::Failed(why) => Some(why),
+        _ => None,
     };
     object(json!({
         "steps": totals.steps,
@@ -106,6 +114,7 @@ fn what_happened<V: Vector>(simulation: &Simulation<'_, V>, ending: Ending) -> M
         "simulated_time": gas.time(),
         "end_reason": end_reason,
         "interrupted": ending == Ending::Interrupted,
+        "failure": failure,
         "kinetic_energy_initial": simulation.beginning().kinetic_energy,
         "kinetic_energy_final": moments::kinetic_energy(gas),
         "temperature": moments::temperature(gas),

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use super::rerun::{Reached, Rerun};
 use super::resume::{OtherNumerics, check_numerics, scenario_of};
 use super::state_difference::{first_difference, grain_in_picture, said, same};
-use super::{Listener, RunError};
+use super::{Listener, OBSERVATION, OBSERVATION_KEY, RunError};
 use crate::matter::state_hash::state_hash;
 use crate::record::checkpoints::{Checkpoint, each_checkpoint};
 use crate::record::contents::Frame;
@@ -76,6 +76,8 @@ pub struct Extent {
     pub events: u64,
     /// Up to when [time].
     pub time: f64,
+    /// Parts of the run that it reaches into, each with its own scenario.
+    pub parts: usize,
 }
 
 /// What comes out of a verification.
@@ -148,10 +150,11 @@ fn verify_in<V: Vector>(
     tell: Listener<'_>,
 ) -> Result<Verdict, VerifyError> {
     let same_version = history.value("version") == env!("CARGO_PKG_VERSION");
+    let observes_alike = same_version && history.value(OBSERVATION_KEY) == OBSERVATION.to_string();
     let rerun = Rerun::new(log, parts, &history.earlier, stop, tell);
     let mut check = Check {
         rerun,
-        same_version,
+        observes_alike,
         columns: Vec::new(),
         extent: Extent::default(),
         parted: None,
@@ -184,8 +187,8 @@ enum End {
 /// A log that is held against a re-run.
 struct Check<'s, V: Vector> {
     rerun: Rerun<'s, V>,
-    /// Whether the measures are those of the log.
-    same_version: bool,
+    /// Whether sums and measures are those of the log.
+    observes_alike: bool,
     /// Names of the columns in the log.
     columns: Vec<String>,
     extent: Extent,
@@ -213,7 +216,7 @@ impl<V: Vector> Check<'_, V> {
                 let unlike = |misfit: Misfit| End::Different(misfit.to_string());
                 self.reach(state.time, self.rerun.is_interruption(&state).map_err(unlike)?)?;
                 let compared = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
-                    first_difference(&state, rerun, self.same_version)
+                    first_difference(&state, rerun, self.observes_alike)
                 });
                 self.count(compared.map_err(unlike)?, |extent| extent.states += 1)
             }),
@@ -236,7 +239,7 @@ impl<V: Vector> Check<'_, V> {
             self.parted = Some(self.at(difference));
             return Ok(());
         }
-        let difference = self.same_version.then(|| self.first_column(values, &columns, &row)).flatten();
+        let difference = self.observes_alike.then(|| self.first_column(values, &columns, &row)).flatten();
         self.count(difference, |extent| extent.hashes += 1)
     }
 
@@ -272,6 +275,7 @@ impl<V: Vector> Check<'_, V> {
         add(&mut self.extent);
         (self.extent.particle_steps, self.extent.events) = self.rerun.work();
         self.extent.time = self.rerun.gas().time();
+        self.extent.parts = self.rerun.parts_begun();
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use super::estimate::{self, Estimate};
 use super::model::{EngineKind, Scenario, Spacing};
 use crate::law::boundary::Face;
 use crate::observe::field::Quantity;
+use crate::simulation::schedule::ROUNDING;
 use crate::space::Vector;
 
 /// Up to so many grains the columns stay in the caches of a processor.
@@ -151,7 +152,7 @@ pub(super) struct Recordings {
 pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
     let wanted = match scenario.record.spacing {
         Spacing::Frames(frames) | Spacing::LogFrames(frames) => f64::from(frames) + 1.0,
-        Spacing::Every(every) => duration(scenario).map_or(1.0, |duration| (duration / every).ceil()) + 1.0,
+        Spacing::Every(every) => duration(scenario).map_or(1.0, |duration| pauses(duration, every)) + 1.0,
         Spacing::Ends => 2.0,
     };
     let most =
@@ -159,11 +160,18 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
     Recordings { wanted, made: wanted.min(most + 1.0) }
 }
 
+/// Pauses of a run that is recorded at every multiple of `every` [time] and at its end: 0.9 is three times 0.3, though not so
+/// for their quotient.
+fn pauses(duration: f64, every: f64) -> f64 {
+    (duration / every * (1.0 - ROUNDING)).ceil()
+}
+
 /// Size of the log before compression [bytes].
 pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
     let spread = f64::from(scenario.record.states);
     let every = scenario.record.state_every;
-    let states = every.zip(duration(scenario)).map_or(spread, |(every, duration)| duration / every) + 1.0;
+    let states =
+        every.zip(duration(scenario)).map_or(spread, |(every, duration)| pauses(duration, every)) + 1.0;
     recordings(scenario).made * RECORD
         + pictures(scenario)
         + states * final_grains(scenario) * grain_bytes::<V>()

@@ -7,7 +7,8 @@ use super::initial::stated_temperature;
 use super::model::{EngineKind, RunLimits, Scenario, TimeStep};
 use super::pace::{falling_speed, falls_for_ever, longest_step, starting_speed};
 use crate::law::boundary::WallKind;
-use crate::law::kinetic_theory::{collision_frequency, cooling_per_collision, haff_time};
+use crate::law::kinetic_theory::{self, collision_frequency, cooling_per_collision, haff_time};
+use crate::law::mixture::Mixture;
 use crate::space::Vector;
 
 /// What a logarithm of the energy falls by until flow is all that is left of it, about.
@@ -41,13 +42,38 @@ pub(super) fn contact_correlation<V: Vector>(scenario: &Scenario<V>) -> f64 {
     }
 }
 
+/// The species of the start, where there are several.
+fn mixture<V: Vector>(scenario: &Scenario<V>) -> Option<Mixture> {
+    (!scenario.species.is_empty()).then(|| Mixture::new(scenario.constituents(), scenario.size.product()))
+}
+
+/// Mean free path at the start [length]; `None` without grains, and of mixtures too dense for what is known of them.
+pub(super) fn mean_free_path<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+    let path = || match mixture(scenario) {
+        Some(mixture) => mixture.mean_free_path::<V>(),
+        None => kinetic_theory::mean_free_path::<V>(scenario.grain, scenario.volume_fraction()),
+    };
+    (scenario.count > 0 && is_within_theory(scenario)).then(path)
+}
+
+/// Whether contact values are those of a fluid; of dense gases of one kind the formula is a bound to the right side still.
+pub(super) fn is_within_theory<V: Vector>(scenario: &Scenario<V>) -> bool {
+    scenario.species.is_empty() || scenario.volume_fraction() < V::FREEZING
+}
+
 pub(super) fn rates<V: Vector>(scenario: &Scenario<V>) -> Option<Rates> {
     let temperature = stated_temperature(scenario);
     if temperature == 0.0 || scenario.count < 2 {
         return None;
     }
-    let (nu, correlation) = (scenario.volume_fraction(), contact_correlation(scenario));
-    let collision_frequency = collision_frequency::<V>(scenario.mean_grain(), nu, temperature, correlation);
+    let collision_frequency = match mixture(scenario) {
+        Some(mixture) => mixture.collision_frequency::<V>(temperature),
+        None => {
+            let (nu, correlation) = (scenario.volume_fraction(), contact_correlation(scenario));
+            collision_frequency::<V>(scenario.grain, nu, temperature, correlation)
+        }
+    };
+    // While all species have one temperature a collision takes (1 − r²) T of the energy, whatever the masses.
     let restitution = scenario.restitution.typical();
     let haff_time = (restitution < 1.0).then(|| haff_time::<V>(restitution, collision_frequency));
     Some(Rates { collision_frequency, haff_time })

@@ -21,6 +21,7 @@ pub mod model;
 mod overrides;
 mod pace;
 mod path;
+pub mod pauses;
 mod read;
 mod reader;
 mod schema;

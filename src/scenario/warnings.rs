@@ -162,7 +162,7 @@ mod tests {
         assert!(said.contains("lets out about 0.7071;"), "{said}");
         assert!(said.contains("A source.rate of 0.707 or less"), "{said}");
         let thrown = [&fast[..], &["source.velocity=[0,-20]"]].concat();
-        for quiet in [&["engine.kind=event-driven"][..], &["source.rate=8"], &thrown] {
+        for quiet in [&["engine.kind=event-driven"][..], &["source.rate=8"], &thrown[..]] {
             assert!(!warned("heap", quiet).contains("cannot pour"), "{quiet:?}");
         }
     }

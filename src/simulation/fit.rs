@@ -3,6 +3,7 @@
 
 use crate::engine::report::Totals;
 use crate::law::boundary::{Boundary, WallKind};
+use crate::observe::moments;
 use crate::record::state::SavedState;
 use crate::scenario::model::{InitialPositions, Scenario};
 use crate::space::Vector;
@@ -11,6 +12,8 @@ use crate::space::Vector;
 const MOST: u64 = 1 << 60;
 /// What rounding may take from a clock, as a share of its time.
 const COMPENSATION: f64 = 1e-9;
+/// Rounding of a speed, as a share of it.
+const SPEED_ROUNDING: f64 = 1e-12;
 
 /// A saved state that no run of the scenario can have left.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -88,7 +91,17 @@ fn check_grains<V: Vector>(scenario: &Scenario<V>, saved: &SavedState<'_, V>) ->
             return Err(format!("grain {id} moves at no finite speed"));
         }
     }
-    Ok(())
+    check_largest_speed(saved)
+}
+
+/// The fastest grain is as fast as the state says.
+fn check_largest_speed<V: Vector>(saved: &SavedState<'_, V>) -> Result<(), String> {
+    let Some(said) = saved.largest_speed else { return Ok(()) };
+    let found = moments::largest_speed(&saved.columns.velocities);
+    if (found - said).abs() <= SPEED_ROUNDING * found {
+        return Ok(());
+    }
+    Err(format!("its fastest grain moves at {found:?}, and the largest speed is {said:?}"))
 }
 
 /// How far walls that vibrate come out of the box along each axis [length].

@@ -114,7 +114,8 @@ impl<V: Vector> Pouring<V> {
         self.held_until
     }
 
-    /// When the next grain is due, or is tried again [time].
+    /// When the next grain is due, or is tried again [time]. Its rounding is part of the trajectory: grains come at these times
+    /// and at no others, and nothing here is compared with slack, as schedules of recordings are.
     pub fn next_time(&self) -> Option<f64> {
         let nominal = f64::from(self.poured) / self.source.rate;
         (!self.is_done()).then(|| nominal.max(self.held_until))

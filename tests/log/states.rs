@@ -85,6 +85,7 @@ fn any_state<V: Vector<Spin: AsMut<[f64]>>>() -> impl Strategy<Value = SavedStat
             ] = counts;
             counted.wall_momentum = momentum;
             state.held_until = floats[2];
+            state.largest_speed = (counts[5] % 2 == 0).then_some(floats[4]);
             state.invalid_states = (counts[3] % 2 == 0).then_some(counts[4]);
             state.engine.numbers = floats.repeat(counts[7] as usize % 5);
             state.engine.words = counts.map(|count| count as u32).repeat(counts[8] as usize % 3);
@@ -110,7 +111,7 @@ fn bits<V: Vector>(state: &SavedState<'_, V>) -> String {
     let totals = &state.totals;
     let counts = &totals.counts;
     format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         [
             state.held_until,
             totals.since.collisions_per_particle,
@@ -133,6 +134,7 @@ fn bits<V: Vector>(state: &SavedState<'_, V>) -> String {
         state.engine.numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>(),
         &state.engine.words,
         (totals.events, totals.since.grains, totals.since.collisions, state.invalid_states),
+        state.largest_speed.map(f64::to_bits),
     )
 }
 

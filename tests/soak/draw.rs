@@ -27,7 +27,7 @@ impl Dice {
     }
 
     /// A number with three digits, so that texts can be read.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         ((low + (high - low) * self.0.uniform()) * 1000.0).round() / 1000.0
     }
 }

@@ -3,6 +3,8 @@
 
 mod case;
 mod draw;
+mod gravity;
+mod gravity_text;
 mod hostile;
 mod laws;
 mod logs;
@@ -25,6 +27,8 @@ use trial::{Tally, trial};
 /// Cases of every test run: scenarios, and shots at each reader.
 const CASES: u64 = 40;
 const SHOTS: u64 = 1500;
+/// Runs under gravity, each gone on with from all of its states.
+const GRAVITY_RUNS: u64 = 60;
 
 #[test]
 fn small_scenarios_keep_what_they_must() {
@@ -33,6 +37,17 @@ fn small_scenarios_keep_what_they_must() {
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
     // Refused cases and cases without collisions test nothing.
     assert!(tally.held >= CASES * 3 / 4 && tally.collisions > 100 * CASES, "{tally:?}");
+}
+
+/// Moves that are rejected give grains back speeds of before their flights: such states must be there to be tried.
+#[test]
+fn runs_under_gravity_go_on_from_every_state_and_are_verified() {
+    let mut tally = gravity::Tally::default();
+    let failures: Vec<String> =
+        (1..=GRAVITY_RUNS).filter_map(|seed| gravity::trial(seed, &mut tally).err()).collect();
+    assert!(failures.is_empty(), "{} of {GRAVITY_RUNS}:\n{}", failures.len(), failures.join("\n\n"));
+    let tried = tally.runs >= GRAVITY_RUNS * 9 / 10 && tally.states > 6 * GRAVITY_RUNS && tally.outrun > 0;
+    assert!(tried && tally.failed > 2 && tally.stopped > 2, "{tally:?}");
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn judge(verdict: Result<Verdict, VerifyError>, quiet: bool) -> Exit {
             if !quiet {
                 let up_to =
                     cut_off.as_ref().map(|_| format!(" up to t = {:?}", extent.time)).unwrap_or_default();
-                println!("verified{up_to}: {}, identical", words(&extent));
+                println!("verified{up_to}: {}, identical{}", words(&extent), parts(&extent));
                 cut_off.iter().for_each(|sentence| println!("{sentence}"));
             }
             Exit::Done
@@ -61,6 +61,14 @@ fn judge(verdict: Result<Verdict, VerifyError>, quiet: bool) -> Exit {
             complain(&error);
             Exit::BadInput
         }
+    }
+}
+
+/// That a run which went on with changes was made again as it was.
+fn parts(extent: &Extent) -> String {
+    match extent.parts {
+        0 | 1 => String::new(),
+        parts => format!(", in {parts} parts, each by the scenario that it ran by"),
     }
 }
 

@@ -23,6 +23,19 @@ struct Tape<'a> {
 const CUT_OFF: EngineMisfit = EngineMisfit("it is cut off");
 
 impl Tape<'_> {
+    /// Whether each of the `grains` that follow has, beside `numbers` others, the time of its last collision. It has one where
+    /// the run had a contact time when it was saved, whatever cure it goes on with. Behind the grains stands the watch for
+    /// collapse, but in older states.
+    fn has_last_collisions(&self, grains: u32, numbers: usize) -> Result<bool, EngineMisfit> {
+        let (here, grains) = (self.numbers.len(), grains as usize);
+        let is_of = |each: usize, watch: usize| here == each * grains + watch;
+        match [0, 1].map(|more| is_of(numbers + more, 1)) {
+            [false, false] if is_of(numbers, 0) => Ok(false),
+            [false, false] if is_of(numbers + 1, 0) => Ok(true),
+            [false, false] => Err(CUT_OFF),
+            [without, _] => Ok(!without),
+        }
+    }
     fn number(&mut self) -> Result<f64, EngineMisfit> {
         self.numbers.next().copied().ok_or(CUT_OFF)
     }
@@ -150,8 +163,9 @@ impl<V: Vector> World<V> {
         world.species = (!laws.species.is_empty()).then(Vec::new);
         world.last_collisions = laws.cure.contact_time.map(|_| Vec::new());
         let mut anchors = lists.is_some().then(Vec::new);
+        let has_last = tape.has_last_collisions(grains, world.numbers_of_a_grain(anchors.is_some()))?;
         for _ in 0..grains {
-            world.read_grain(&mut tape, &mut anchors)?;
+            world.read_grain(&mut tape, &mut anchors, has_last)?;
         }
         world.watch = tape.watch()?;
         world.lists = lists.map(|mut lists| {
@@ -168,7 +182,19 @@ impl<V: Vector> World<V> {
         Ok(world)
     }
 
-    fn read_grain(&mut self, tape: &mut Tape<'_>, anchors: &mut Option<Vec<V>>) -> Result<(), EngineMisfit> {
+    /// Numbers of a grain on a tape, without the time of its last collision.
+    fn numbers_of_a_grain(&self, has_anchor: bool) -> usize {
+        let spin = self.spins.as_ref().map_or(0, |_| V::Spin::default().as_ref().len());
+        2 * V::DIMENSION + 3 + spin + if has_anchor { V::DIMENSION } else { 0 }
+    }
+
+    /// Reads the next grain, with the time of its last collision where the tape `has_last` collisions.
+    fn read_grain(
+        &mut self,
+        tape: &mut Tape<'_>,
+        anchors: &mut Option<Vec<V>>,
+        has_last: bool,
+    ) -> Result<(), EngineMisfit> {
         let (position, velocity) = (tape.vector()?, tape.vector()?);
         let (time, plan_time, contact_time) = (tape.number()?, tape.number()?, tape.number()?);
         self.ids.push(tape.word()?);
@@ -185,9 +211,9 @@ impl<V: Vector> World<V> {
             }
             spins.push(spin);
         }
-        if let Some(last) = &mut self.last_collisions {
-            last.push(tape.number()?);
-        }
+        // A contact time that comes with a new cure knows of no collision before.
+        let last = if has_last { tape.number()? } else { f64::NEG_INFINITY };
+        self.last_collisions.iter_mut().for_each(|all| all.push(last));
         if let Some(anchors) = anchors {
             anchors.push(tape.vector()?);
         }

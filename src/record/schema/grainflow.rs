@@ -33,7 +33,7 @@ message! {
     "grainflow" "grainflow/Engine.proto" Engine {
         /// Steps made.
         step: u64 = 1 [uint64],
-        /// Largest speed after the last step [length/time], or −1.
+        /// Largest speed of the flights of the last step, from which the next one gets its length [length/time], or −1.
         largest_speed: Option<f64> = 2 [double, optional],
         /// Collisions per time that the next step expects [1/time], or −1.
         collision_rate: Option<f64> = 3 [double, optional],
@@ -172,5 +172,7 @@ message! {
         engine_words: Vec<u8> = 22 [bytes = "vec"],
         /// Overlaps found by audits, of engines that allow none.
         invalid_states: Option<u64> = 23 [uint64, optional],
+        /// Largest speed of the grains of the state [length/time].
+        largest_speed: Option<f64> = 24 [double, optional],
     }
 }

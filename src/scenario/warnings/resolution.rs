@@ -1,7 +1,8 @@
 //! Cells and steps that are too coarse for what happens in them.
 
 use crate::law::restitution::{Constant, RestitutionLaw};
-use crate::scenario::bound::{rounded, shown};
+use crate::number::exact;
+use crate::scenario::bound::rounded;
 use crate::scenario::check::grains_per_cell;
 use crate::scenario::model::{EngineKind, EnskogFactor, Scenario, TimeStep};
 use crate::scenario::{estimate, initial, pace};
@@ -98,7 +99,7 @@ pub(super) fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
         warnings.push(format!(
             "the fixed step {} will be too long: {who} at {}, and a step that is too long ends the run; \
              engine.time_step.fixed = {} would do",
-            shown(step),
+            exact(step),
             rounded(speed),
             pace::rounded_down(pace::longest_step(scenario, later))
         ));
