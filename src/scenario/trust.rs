@@ -124,7 +124,7 @@ fn hybrid_at_rest<V: Vector>(scenario: &Scenario<V>) -> Doubt {
     } else {
         (
             "hsmc lets beds sink after they should rest",
-            "hsmc lets beds sink after they should rest: the centre of mass of 100 disks comes to lie 25 % below that of exact \
+            "hsmc lets beds sink after they should rest: the centre of mass of 100 disks comes to lie 23 % below that of exact \
              dynamics and soft spheres",
             &["centre_of_mass", "wall_normal_stress"],
         )
