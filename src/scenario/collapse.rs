@@ -1,11 +1,12 @@
 //! Whether inelastic collapse may end an event-driven run.
 
-use super::bound::{rounded, shown};
+use super::bound::rounded;
 use super::cost;
 use super::estimate;
 use super::model::{Cure, Scenario};
 use crate::law::kinetic_theory::{collapse_restitution, optical_depth};
 use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::number;
 use crate::space::Vector;
 
 /// A contact time that leaves a gas as it is, in mean times between collisions of a grain.
@@ -39,7 +40,7 @@ fn too_slow<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
         format!(
             "engine.event_driven.collapse.elastic_below = {} may be too low under gravity: a chute ended in collapse with as little; \
              {tried} has been tried on chutes, beds and heaps",
-            shown(speed)
+            number::exact(speed)
         )
     })
 }
