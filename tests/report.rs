@@ -185,6 +185,22 @@ fn no_run_is_held_against_this_program() {
 }
 
 #[test]
+fn known_faults_of_an_engine_stand_beside_the_figures_they_concern() {
+    let steep = page(&heap());
+    assert!(steep.contains("Known of this engine here: hsmc makes heaps too steep"));
+    assert!(cards(&steep).contains("<dd>known fault: hsmc makes heaps too steep"));
+    let stress = page(&shear());
+    let fault = "<dd>known fault: hsmc with cells of";
+    let card = |title: &str| {
+        let cards = cards(&stress);
+        let start = cards.find(&format!("<dt>{title}</dt>")).unwrap_or_else(|| panic!("{title}: {cards}"));
+        cards[start..].split_once("</div>").map_or("", |(card, _)| card)
+    };
+    assert!(card("wall shear stress").contains(fault));
+    assert!(!card("velocity profile slope").contains(fault));
+}
+
+#[test]
 fn the_equation_of_state_knows_the_transfer() {
     let expected = |key: &str| {
         let mut sample = cooling();

@@ -107,12 +107,12 @@ fn last_state_words(state: Option<f64>) -> String {
 
 /// How a run that `source` has ended goes on from the last `state` of its `log`, where another cure of collapse lets it.
 fn continuation(source: &SimulationError, log: &Path, state: Option<f64>) -> Option<String> {
-    let SimulationError::Engine(EngineError::Collapse { cure, value, .. }) = source else { return None };
+    let SimulationError::Engine(EngineError::Collapse { remedy, .. }) = source else { return None };
     state?;
     let folder = log.parent().unwrap_or(Path::new("."));
     Some(format!(
         "with a cure it goes on from that state:\n  grainflow run --resume '{}' --set \
-         'engine.event_driven.collapse={{ {cure} = {value:.1e} }}'",
+         'engine.event_driven.collapse={remedy}'",
         folder.display()
     ))
 }

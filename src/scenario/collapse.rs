@@ -4,32 +4,58 @@ use super::bound::rounded;
 use super::cost;
 use super::estimate;
 use super::model::{Cure, Scenario};
-use crate::engine::event_driven::rules::resting_speed;
 use crate::law::kinetic_theory::{collapse_restitution, optical_depth};
 use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::number;
 use crate::space::Vector;
 
 /// A contact time that leaves a gas as it is, in mean times between collisions of a grain.
 const SHORT_IN_A_GAS: f64 = 1e-4;
+/// A speed that has ended in collapse, in those of [`Cure::at_rest`]: 0.1 √(g d) in place of 0.3.
+const HAS_COLLAPSED: f64 = 0.34;
 /// A speed of a cure that leaves a gas between moving walls as it is, in speeds of the walls.
 const SLOW_BESIDE_WALLS: f64 = 1e-4;
 
 /// What to say of a run without a cure that collapse is likely to end.
 pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    if !scenario.engine.kind.is_event_driven() || is_cured(scenario) {
+    if !scenario.engine.kind.is_event_driven() {
         return None;
+    }
+    if is_cured(scenario) {
+        return too_slow(scenario);
     }
     let (reason, remedy) = danger(scenario)?;
     Some(format!(
         "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {} prevents it",
-        written(remedy)
+        remedy
     ))
 }
 
-/// Whether the scenario has a cure that helps. A contact time is none for grains that lie on each other: they collide all the time.
+/// What to say of a speed with which runs under gravity have collapsed.
+fn too_slow<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
+    let cure = scenario.engine.event_driven.cure;
+    let tried = tried(scenario);
+    let (speed, enough) = cure.elastic_below.zip(tried.elastic_below)?;
+    (cost::settles(scenario) && cure.contact_time.is_none() && speed < HAS_COLLAPSED * enough).then(|| {
+        format!(
+            "engine.event_driven.collapse.elastic_below = {} may be too low under gravity: a chute ended in collapse with as little; \
+             {tried} has been tried on chutes, beds and heaps",
+            number::exact(speed)
+        )
+    })
+}
+
+/// The cure that has been tried on grains that lie.
+fn tried<V: Vector>(scenario: &Scenario<V>) -> Cure {
+    Cure::at_rest(scenario.gravity.length(), scenario.largest_diameter())
+}
+
+/// Whether the scenario has a cure that helps. A contact time alone is none for grains that lie on each other: they collide all the
+/// time.
 pub(super) fn is_cured<V: Vector>(scenario: &Scenario<V>) -> bool {
     let cure = scenario.engine.event_driven.cure;
-    cure != Cure::default() && (cure.contact_time.is_none() || !cost::settles(scenario))
+    let is_contact_time = cure == Cure { contact_time: cure.contact_time, ..Cure::default() };
+    cure != Cure::default() && !(is_contact_time && cost::settles(scenario))
 }
 
 /// The cure that an event-driven run of `scenario` needs beside what it has; `None` where it needs none.
@@ -43,8 +69,7 @@ fn danger<V: Vector>(scenario: &Scenario<V>) -> Option<(String, Cure)> {
     let RestitutionLaw::Constant(Constant(restitution)) = scenario.restitution else { return None };
     if restitution < 1.0 && cost::settles(scenario) {
         let reason = "grains that come to rest under gravity collide without end".to_owned();
-        let speed = resting_speed(scenario.gravity.length(), scenario.largest_diameter());
-        return Some((reason, Cure { elastic_below: Some(speed), ..Cure::default() }));
+        return Some((reason, tried(scenario)));
     }
     let bound = critical_restitution::<V>(cost::final_grains(scenario), scenario);
     let reason = || {
@@ -69,24 +94,6 @@ fn of_a_gas<V: Vector>(scenario: &Scenario<V>) -> Cure {
         }
         None => Cure { rotation: Some(5.0_f64.to_radians()), ..Cure::default() },
     }
-}
-
-/// A cure as it stands in a scenario.
-pub(super) fn written(cure: Cure) -> String {
-    let speed = cure.elastic_below.map(|speed| format!("elastic_below = {}", one_digit(speed)));
-    let time = cure.contact_time.map(|time| format!("contact_time = {}", one_digit(time)));
-    let angle = cure.rotation.map(|angle| format!("rotation = {}", rounded(angle.to_degrees())));
-    let parts: Vec<String> = [speed, time, angle].into_iter().flatten().collect();
-    format!("{{ {} }}", parts.join(", "))
-}
-
-/// A value of which one digit is known.
-fn one_digit(value: f64) -> String {
-    if (1e-3..1e3).contains(&value) {
-        let text = format!("{value:.0e}");
-        return text.parse::<f64>().map_or(text, |rounded| format!("{rounded}"));
-    }
-    format!("{value:.0e}")
 }
 
 /// The restitution below which collapse can happen in a cube of these grains.
@@ -135,10 +142,30 @@ mod tests {
         assert_eq!(warned("cooling", &["particles.restitution=0.95"]), "");
         let warning = warned("sedimentation", &[]);
         assert!(warning.contains("come to rest under gravity"), "{warning}");
-        assert!(warned("heap", &[]).contains("elastic_below = 0.3"), "{}", warned("heap", &[]));
+        assert!(
+            warned("heap", &[]).contains("{ elastic_below = 0.3, contact_time = 1e-5 }"),
+            "{}",
+            warned("heap", &[])
+        );
         assert_eq!(warned("heap", &["engine.event_driven.collapse={rotation=5}"]), "");
         let law = "particles.restitution={law='velocity-dependent',r0=0.9,v0=1}";
         assert_eq!(warned("heap", &[law]), "");
         assert_eq!(warned("heap", &["particles.restitution=1"]), "");
+    }
+
+    #[test]
+    fn a_speed_with_which_runs_have_collapsed_is_said() {
+        let with = |speed: &str| {
+            warned("heap", &[&format!("engine.event_driven.collapse={{elastic_below={speed}}}")])
+        };
+        assert!(with("0.1").contains("elastic_below = 0.1 may be too low"), "{}", with("0.1"));
+        assert!(
+            with("0.1").contains("{ elastic_below = 0.3, contact_time = 1e-5 } has been tried"),
+            "{}",
+            with("0.1")
+        );
+        assert_eq!(with("0.2"), "");
+        // Driven gases have no weight to carry.
+        assert_eq!(warned("shear", &["engine.event_driven.collapse={elastic_below=1e-4}"]), "");
     }
 }

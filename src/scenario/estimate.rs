@@ -162,15 +162,18 @@ pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
 /// Whether a gas cools so far that grains which still move together no longer move apart: they collide less and less, and
 /// steps are capped by how far they fly.
 fn flows_in_the_end<V: Vector>(scenario: &Scenario<V>) -> bool {
+    cools(scenario) && cooled(scenario).is_some_and(|cooled| 2.0 * cooled > FLOW_ALONE)
+}
+
+/// ln(1 + t/t₀) at the end of a run of a gas that cools, by Haff's law: half of the logarithm by which its energy falls. `None`
+/// where nothing is lost.
+pub(super) fn cooled<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
     let RunLimits { time, collisions_per_particle, .. } = scenario.run;
-    let Some((rates, haff_time)) = rates(scenario).and_then(|rates| Some((rates, rates.haff_time?))) else {
-        return false;
-    };
-    // ln(1 + t/t₀), half of the logarithm of what is left of the energy.
+    let rates = rates(scenario)?;
+    let haff_time = rates.haff_time?;
     let by_time = time.map(|time| (time / haff_time).ln_1p());
     let by_collisions = collisions_per_particle.map(|limit| limit / (rates.collision_frequency * haff_time));
-    let cooled = [by_time, by_collisions].into_iter().flatten().reduce(f64::min);
-    cools(scenario) && cooled.is_some_and(|cooled| 2.0 * cooled > FLOW_ALONE)
+    [by_time, by_collisions].into_iter().flatten().reduce(f64::min)
 }
 
 /// Steps until the first limit while the largest speed is `speed`, or cools down from it.

@@ -11,6 +11,9 @@ const MOST_GRAINS: f64 = 1e5;
 /// Exact dynamics takes about as long where it takes at most so many times as long.
 const ABOUT_AS_LONG: f64 = 3.0;
 
+/// A wait that a better result is worth whatever the engine takes [s].
+const WORTH_THE_WAIT: f64 = 600.0;
+
 /// Exact dynamics in place of the engine of a scenario.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proposal {
@@ -23,11 +26,14 @@ pub(super) struct Proposal {
 }
 
 impl Proposal {
+    /// Whether to take it where the engine is known to be wrong.
+    pub(super) fn is_worth_it(&self) -> bool {
+        self.is_as_fast || self.seconds.most <= WORTH_THE_WAIT
+    }
+
     /// The options of the command line.
     pub(super) fn options(&self) -> String {
-        let cure = self
-            .cure
-            .map(|cure| format!(" --set 'engine.event_driven.collapse={}'", collapse::written(cure)));
+        let cure = self.cure.map(|cure| format!(" --set 'engine.event_driven.collapse={cure}'"));
         format!("--engine event-driven{}", cure.unwrap_or_default())
     }
 }

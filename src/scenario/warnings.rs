@@ -49,7 +49,7 @@ fn known<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
 
 /// Exact dynamics in place of an engine that is known to be wrong here.
 fn exact_instead<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    let proposal = exact::proposal(scenario)?;
+    let proposal = exact::proposal(scenario).filter(exact::Proposal::is_worth_it)?;
     let long = if proposal.is_as_fast { ", about as long" } else { "" };
     let took = spoken(proposal.seconds.most);
     Some(format!("exact dynamics takes up to {took}{long}: {}", proposal.options()))
@@ -81,7 +81,7 @@ mod tests {
         for quiet in ["hard-spheres", "simic-cooling"] {
             assert_eq!(warned(quiet, &[]), "", "{quiet}");
         }
-        assert_eq!(warned("cooling", &["run={collisions_per_particle=5}"]), "");
+        assert_eq!(warned("cooling", &["run={collisions_per_particle=5}", "record.frames=10"]), "");
     }
 
     #[test]
@@ -109,7 +109,12 @@ mod tests {
         let said = warned("heap", &["source.count=600"]);
         assert!(said.contains("hsmc makes heaps too steep"), "{said}");
         assert!(said.contains("exact dynamics takes up to"), "{said}");
-        assert!(said.contains("--set 'engine.event_driven.collapse={ elastic_below = 0.3 }'"), "{said}");
+        assert!(
+            said.contains(
+                "--set 'engine.event_driven.collapse={ elastic_below = 0.3, contact_time = 1e-5 }'"
+            ),
+            "{said}"
+        );
         // Beyond some 10⁵ grains nothing is proposed.
         assert!(!warned("heap", &["source.count=200000"]).contains("exact dynamics takes"));
         assert!(!warned("heap", &["engine.kind=event-driven"]).contains("too steep"));
@@ -120,10 +125,13 @@ mod tests {
         // Few grains per cell call for larger cells, walls that move for smaller ones: between these only one is said.
         for sets in [&[][..], &["engine.cell_size=8"], &["engine.cell_size=2"]] {
             let said = warned("shear", sets);
-            assert!(!said.contains("enlarge"), "{said}");
+            assert!(!said.contains("enlarge engine.cell_size"), "{said}");
             assert!(said.contains("makes the stress of driven flows too high"), "{said}");
         }
-        assert!(warned("cooling", &["engine.kind=cba", "engine.cell_size=3"]).contains("enlarge"));
+        assert!(
+            warned("cooling", &["engine.kind=cba", "engine.cell_size=3"])
+                .contains("enlarge engine.cell_size")
+        );
     }
 
     #[test]
@@ -148,17 +156,15 @@ mod tests {
 
     #[test]
     fn a_source_faster_than_its_spout_is_said_before_the_run() {
-        let fast = ["source.rate=8"];
-        // Four grains to a cell, and half of its side to fall: 4/√2.
-        assert!(
-            warned("heap", &fast).contains("its spout lets out about 2.828 at most"),
-            "{}",
-            warned("heap", &fast)
-        );
-        let exact = warned("heap", &["source.rate=8", "engine.kind=event-driven"]);
-        assert!(exact.contains("lets out about 0.7071 at most"), "{exact}");
-        assert!(!warned("heap", &[]).contains("at most: "));
-        assert!(!warned("heap", &["source.rate=8", "source.velocity=[0,-20]"]).contains("at most: "));
+        // From rest a disk falls by its diameter in √2.
+        let fast = ["source.rate=8", "engine.kind=event-driven"];
+        let said = warned("heap", &fast);
+        assert!(said.contains("lets out about 0.7071;"), "{said}");
+        assert!(said.contains("A source.rate of 0.707 or less"), "{said}");
+        let thrown = [&fast[..], &["source.velocity=[0,-20]"]].concat();
+        for quiet in [&["engine.kind=event-driven"][..], &["source.rate=8"], &thrown[..]] {
+            assert!(!warned("heap", quiet).contains("cannot pour"), "{quiet:?}");
+        }
     }
 
     #[test]
@@ -216,7 +222,7 @@ mod tests {
 
     #[test]
     fn memory_and_disk_are_compared_with_what_is_free() {
-        let clustering = scenario("clustering", &["run.time=20"]);
+        let clustering = scenario("clustering", &["run.time=20", "record.frames=100"]);
         let warnings = |memory, disk| check_on(&clustering, Machine { memory, disk }).warnings;
         assert!(warnings(Some(16_000_000_000), Some(16_000_000_000)).is_empty());
         let said = warnings(Some(50_000_000), None);

@@ -162,7 +162,8 @@ impl<V: Vector> Pouring<V> {
 
     /// Height above the ground of the upper side of the highest place that is full: a place is a cube
     /// two diameters wide, full at random close packing. 0 while none is full. Where the stream from the spout is so dense
-    /// that it fills places by itself, its grains do not count: they are on their way, and nothing lies on them.
+    /// that it fills half a place by itself, grains that have met nothing yet do not count, nor do places that fall: they are on
+    /// their way, and nothing lies on them.
     fn top_of_full_places(&self, gas: &Gas<V>) -> f64 {
         let width =
             PLACE_WIDTH * gas.species.iter().fold(gas.grain.diameter, |d, grain| d.max(grain.diameter));
@@ -172,9 +173,11 @@ impl<V: Vector> Pouring<V> {
         let volume = gas.grain.volume::<V>();
         let full = (V::RANDOM_CLOSE_PACKING * width.powi(V::DIMENSION as i32) / volume).floor();
         let is_mixture = !gas.species.is_empty();
-        let is_dense = 2.0 * self.source.in_flight(self.gravity, width) >= full;
         // Grains in each place, counted by their volumes where those differ.
         let mut counts = vec![0.0; places.iter().product()];
+        // How fast they fall, summed in the same way, where that has to be known.
+        let is_dense = 2.0 * self.source.in_flight(self.gravity, width) >= full;
+        let mut falling = vec![0.0; if is_dense { counts.len() } else { 0 }];
         let mut top = 0;
         for (row, &position) in gas.positions().iter().enumerate() {
             if is_dense && self.falls_freely(gas.velocities()[row]) {
@@ -192,16 +195,20 @@ impl<V: Vector> Pouring<V> {
                 place = place * places[axis] + k;
                 level = if axis == self.axis { k + 1 } else { level };
             }
-            counts[place] += if is_mixture { gas.grain_at(row).volume::<V>() / volume } else { 1.0 };
-            if counts[place] >= full {
+            let share = if is_mixture { gas.grain_at(row).volume::<V>() / volume } else { 1.0 };
+            counts[place] += share;
+            if is_dense {
+                falling[place] -= share * self.up * gas.velocities()[row][self.axis];
+            } else if counts[place] >= full {
                 top = top.max(level);
             }
         }
+        if is_dense {
+            top = self.top_of_what_lies((width, full), &places, &counts, &falling);
+        }
         top as f64 * width
     }
-}
 
-impl<V: Vector> Pouring<V> {
     /// Whether a grain of this velocity has met nothing since the spout let it go: gravity changes its velocity along one
     /// axis alone, and downwards alone, while a collision with another grain changes the others as well.
     fn falls_freely(&self, velocity: V) -> bool {
@@ -209,6 +216,21 @@ impl<V: Vector> Pouring<V> {
             true => self.up * velocity[axis] <= self.up * self.source.velocity[axis],
             false => velocity[axis] == self.source.velocity[axis],
         })
+    }
+
+    /// The level of the highest place that is `full` and whose grains do not fall: on an average they are slower than half of what
+    /// a fall by the height of a place gives. Grains of a stream from rest are faster already where they leave the first place.
+    fn top_of_what_lies(
+        &self,
+        (width, full): (f64, f64),
+        places: &[usize],
+        counts: &[f64],
+        falling: &[f64],
+    ) -> usize {
+        let most = 0.5 * (self.gravity.length() * width).sqrt();
+        let below: usize = places[..self.axis].iter().product();
+        let lies = |&place: &usize| counts[place] >= full && falling[place] < most * counts[place];
+        (0..counts.len()).filter(lies).map(|place| place / below % places[self.axis] + 1).max().unwrap_or(0)
     }
 }
 
