@@ -13,7 +13,8 @@ pub const FAILED: &str = "failed";
 /// Why the run of `summary` could not go on; `None` where it could.
 pub fn failure(summary: &Map<String, Value>) -> Option<&str> {
     let has_failed = summary.get("end_reason").and_then(Value::as_str) == Some(FAILED);
-    has_failed.then(|| summary.get("failure").and_then(Value::as_str).unwrap_or("the summary does not say why"))
+    has_failed
+        .then(|| summary.get("failure").and_then(Value::as_str).unwrap_or("the summary does not say why"))
 }
 
 /// A summary that cannot be used.

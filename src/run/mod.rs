@@ -89,7 +89,11 @@ pub enum RunError {
 }
 
 fn last_state_words(state: Option<f64>) -> String {
-    let words = |time| format!(", with the state before that, at t = {time}; {REPORT} and {SUMMARY} beside it show the run up to there");
+    let words = |time| {
+        format!(
+            ", with the state before that, at t = {time}; {REPORT} and {SUMMARY} beside it show the run up to there"
+        )
+    };
     state.map_or_else(String::new, words)
 }
 
@@ -250,7 +254,8 @@ impl Failed {
         if let Some((recorded, there)) = last {
             let mut there = there.in_place_of(simulation.resumed());
             let continuation = continuation(&source, &log, state);
-            let why = [Some(source.to_string()), continuation].into_iter().flatten().collect::<Vec<_>>().join("\n");
+            let why =
+                [Some(source.to_string()), continuation].into_iter().flatten().collect::<Vec<_>>().join("\n");
             write_files(folder, &mut there, Ending::Failed(&why), watch, &recorded)?;
         }
         Ok(RunError::Simulation { source, log, state })

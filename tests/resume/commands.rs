@@ -73,7 +73,11 @@ fn what_is_wrong_has_its_exit_code() {
     refused(&["replay", "none.mcap", "--verify"], 2, "cannot read the log none.mcap");
     refused(&["run", "--resume", "run", "--seed", "3"], 2, "--seed: a run that goes on keeps its scenario");
     refused(&["run", "--resume", "run", "--engine", "cba"], 2, "--engine: a run that goes on");
-    refused(&["run", "--resume", "run", "--set", "gravity=[0,1]"], 2, "only run.*, record.* and engine.event_driven.collapse may change");
+    refused(
+        &["run", "--resume", "run", "--set", "gravity=[0,1]"],
+        2,
+        "only run.*, record.* and engine.event_driven.collapse may change",
+    );
     assert!(!place.path("run-resumed").exists() && !place.path("out").exists());
 }
 

@@ -25,7 +25,8 @@ fn heap(engine: &str, sets: &[&str]) -> AnyScenario {
 /// Inelastic collapse, grains that become too fast for a fixed step while others are poured, a step that is too long at once.
 fn doomed() -> [(&'static str, AnyScenario); 3] {
     let fixed = ["engine.time_step={ fixed = 0.35 }", "record.measures=[\"energy\", \"flow\", \"heap\"]"];
-    let at_once = ["engine.time_step={ fixed = 0.5 }", "particles.count=5", "initial.velocities={ uniform = 9.0 }"];
+    let at_once =
+        ["engine.time_step={ fixed = 0.5 }", "particles.count=5", "initial.velocities={ uniform = 9.0 }"];
     [
         ("collapse", heap("event-driven", &[])),
         ("too long", heap("hsmc", &fixed)),
@@ -105,9 +106,15 @@ fn a_collapsed_run_goes_on_with_a_cure_that_its_log_knows_of() {
         let log = on.folder.join("log.mcap");
         let history = History::read(&log).unwrap();
         assert!(history.earlier.len() == 1 && history.earlier[0].changes.starts_with(cure));
-        assert!(history.scenario.contains("elastic_below") && !history.earlier[0].scenario.contains("elastic_below"));
+        assert!(
+            history.scenario.contains("elastic_below")
+                && !history.earlier[0].scenario.contains("elastic_below")
+        );
         let (extent, _) = verified(&log);
-        assert_eq!((extent.parts, extent.states), (2, read_states::<glam::DVec2>(&log).unwrap().len() as u64));
+        assert_eq!(
+            (extent.parts, extent.states),
+            (2, read_states::<glam::DVec2>(&log).unwrap().len() as u64)
+        );
         // The same again, from the middle of what the cure made possible, and from there with yet another one.
         let bytes = log_bytes(&on);
         let killed = place.path("killed.mcap");
