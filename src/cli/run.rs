@@ -26,7 +26,8 @@ use crate::stopwatch::Stopwatch;
 const RESUMING: &str =
     "With --resume the new folder holds the whole run, to the same bits as without interruption;
 what was resumed stays as it is. --out is by default the folder of the log with -resumed behind.
---set may give a later end (run.*) or other records (record.*); the rest of the scenario stays.
+--set may give a later end (run.*), other records (record.*) or another cure of inelastic collapse
+(engine.event_driven.collapse); the rest of the scenario stays.
 
   grainflow run --resume out/heap-hsmc
   grainflow run --resume out/shear-hsmc --set run.collisions_per_particle=800";

@@ -314,6 +314,11 @@ impl From<'_> {
         let watch = Stopwatch::default();
         let earlier = self.parts_before(&state);
         let changed = earlier != self.history.earlier;
+        // Where a part of the run begins, and what it begins with, is told by that state alone.
+        let begins_part = earlier.last().is_some_and(|part| {
+            let (steps, events) = (state.totals.steps, state.totals.events.all);
+            (part.time, part.steps, part.events) == (state.time, steps, events)
+        });
         let begins_log = state.recordings == 0;
         let (mut simulation, timetable) =
             go_on_with(scenario, state, changed).map_err(|misfit| unfit(self.log, &misfit))?;
@@ -322,7 +327,7 @@ impl From<'_> {
             log: self.log,
             history: self.history,
             state: place,
-            keeps_state: changed || begins_log,
+            keeps_state: begins_part || begins_log,
             earlier,
         };
         let recorder = Recorder::resume(&log_of(&folder), &mut simulation, timetable, &origin)?;

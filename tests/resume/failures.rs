@@ -26,7 +26,7 @@ fn heap(engine: &str, sets: &[&str]) -> AnyScenario {
 fn doomed() -> [(&'static str, AnyScenario); 3] {
     let fixed = ["engine.time_step={ fixed = 0.35 }", "record.measures=[\"energy\", \"flow\", \"heap\"]"];
     let at_once =
-        ["engine.time_step={ fixed = 0.5 }", "particles.count=5", "initial.velocities={ uniform = 9.0 }"];
+        ["engine.time_step={ fixed = 0.35 }", "particles.count=100", "initial.velocities={ maxwell = 9.0 }"];
     [
         ("collapse", heap("event-driven", &[])),
         ("too long", heap("hsmc", &fixed)),
@@ -100,7 +100,7 @@ fn a_collapsed_run_goes_on_with_a_cure_that_its_log_knows_of() {
         let (place, stop) = (Place::new(), AtomicBool::new(false));
         let scenario = heap("event-driven", sets);
         let (_, at) = why(run(&scenario, &place.path("first"), false, &stop, &mut |_| {}));
-        let on = resume(&place.path("first"), &[cure, "record.states=6"], &place.path("on"));
+        let on = resume(&place.path("first"), &[cure, "record.states=12"], &place.path("on"));
         assert_eq!(on.summary["resumed_at"].as_f64(), at);
         assert!(on.summary["simulated_time"].as_f64() > at && failure(&on.summary).is_none(), "{cure}");
         let log = on.folder.join("log.mcap");
@@ -115,11 +115,17 @@ fn a_collapsed_run_goes_on_with_a_cure_that_its_log_knows_of() {
             (extent.parts, extent.states),
             (2, read_states::<glam::DVec2>(&log).unwrap().len() as u64)
         );
-        // The same again, from the middle of what the cure made possible, and from there with yet another one.
+        // The same again, from the state with which the cure came and from a later one, and from there with yet another one.
         let bytes = log_bytes(&on);
         let killed = place.path("killed.mcap");
-        fs::write(&killed, &bytes[..bytes.len() * 9 / 10]).unwrap();
-        assert!(log_bytes(&resume(&killed, &[], &place.path("again"))) == bytes, "{cure}");
+        let mut ends: Vec<f64> = Vec::new();
+        for percent in [90, 97] {
+            fs::write(&killed, &bytes[..bytes.len() * percent / 100]).unwrap();
+            ends.push(last_state::<glam::DVec2>(&killed).unwrap().unwrap().time);
+            let again = resume(&killed, &[], &place.path(&format!("again-{percent}")));
+            assert!(log_bytes(&again) == bytes, "{cure} from {ends:?}");
+        }
+        assert!(Some(ends[0]) >= at && ends[1] > ends[0], "{at:?} {ends:?}");
         for (k, other) in CURES.iter().enumerate().filter(|(_, other)| **other != cure) {
             let third = resume(&killed, &[other], &place.path(&format!("third-{k}")));
             assert_eq!(verified(&third.folder).0.parts, 3);

@@ -185,7 +185,8 @@ impl Case {
     }
 
     fn source(&self, dice: &mut Dice) -> String {
-        if self.kind != "heap" && !dice.chance(0.15) {
+        // Grains are poured down one axis only.
+        if self.kind == "chute" || self.kind != "heap" && !dice.chance(0.15) {
             return String::new();
         }
         // Grains that come one by one, each after the last has come to rest or left, up to a stream that is held up.
@@ -201,8 +202,10 @@ impl Case {
 
     fn end(&self, dice: &mut Dice) -> String {
         match self.kind {
-            "heap" if dice.chance(0.7) => format!("[run]\nrest = {:?}\n", dice.between(5.0, 20.0)),
-            _ => format!("[run]\ntime = {:?}\n", dice.between(8.0, 30.0)),
+            "heap" if dice.chance(0.7) => format!("[run]\nrest = {:?}\n", dice.between(5.0, 15.0)),
+            // Where grains have come to lie, exact dynamics takes very many events.
+            _ if self.is_exact() => format!("[run]\ntime = {:?}\n", dice.between(4.0, 12.0)),
+            _ => format!("[run]\ntime = {:?}\n", dice.between(8.0, 25.0)),
         }
     }
 }

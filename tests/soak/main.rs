@@ -133,6 +133,8 @@ fn a_step_that_breaks_a_law_is_found() {
     assert_eq!(laws.check(&simulation), Ok(()));
     let spoilt = |spoil: &dyn Fn(&mut Vec<glam::DVec2>, &mut Vec<u32>)| {
         let mut saved = simulation.saved_state(0, 0);
+        // What such a state says of its fastest grain would give it away.
+        saved.largest_speed = None;
         let columns = saved.columns.to_mut();
         spoil(&mut columns.velocities, &mut columns.ids);
         let spoilt = Simulation::resume(&scenario, saved).map_err(|misfit| misfit.to_string())?;

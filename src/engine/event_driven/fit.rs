@@ -2,7 +2,7 @@
 //!
 //! Nothing is checked here that the next events could not stumble over, and only once, when a run goes on.
 
-use super::body::{Body, Contact, Event, NONE, Plan};
+use super::body::{Contact, Event, NONE, Plan};
 use super::world::World;
 use crate::engine::EngineMisfit;
 use crate::matter::gas::Gas;
@@ -25,27 +25,35 @@ impl<V: Vector> World<V> {
         gas: &Gas<V>,
     ) -> Result<(), EngineMisfit> {
         let grains = u64::from(self.next_id);
-        let (seen, year) = (self.since_origin(gas.time()), self.pace.year());
-        let near = |time: f64| (-year..=2.0 * year).contains(&time);
+        let latest = self.latest(gas);
+        let near = |time: f64| (-self.pace.year()..=latest).contains(&time) && time.is_finite();
         let faults = [
             (self.next_id != gas.next_id(), "it has had another number of grains"),
             (!self.pace.is_of(grains), "it has no proper pace"),
             (!self.may_have(counts, half_width, grains), "its cells or lists do not suit the box"),
-            (!(near(self.now) && near(seen)), "it is at another time"),
+            (!(near(self.now) && near(self.since_origin(gas.time()))), "it is at another time"),
             (!(self.scale > 0.0 && self.scale <= 1.0 + APART), "its grains have no proper size"),
         ];
         first(&faults)
     }
 
+    /// The latest time after its origin that a world can be at which is to go on with `gas`: within the year or soon after,
+    /// but where nothing happens, no year ends [time].
+    fn latest(&self, gas: &Gas<V>) -> f64 {
+        self.since_origin(gas.time()).max(2.0 * self.pace.year())
+    }
+
     /// Checks all grains and their plans: that they can be gone on with, and that they are those of `gas`.
     pub(super) fn check_grains(&self, gas: &Gas<V>) -> Result<(), EngineMisfit> {
         let gone = self.plans.iter().filter(|plan| plan.event == Event::Gone).count() as u64;
+        let is_late = self.latest(gas) > 2.0 * self.pace.year();
         first(&[
+            (is_late && !self.is_at_rest(), "it is at another time"),
             (gone != self.pace.gone, "another number of grains has left than it says"),
             (!self.watch.is_over(self.bodies.len()), "its watch for collapse knows other grains"),
         ])?;
         for row in 0..self.bodies.len() as u32 {
-            self.check_grain(row)?;
+            self.check_grain(row, gas)?;
         }
         let mut mine: Vec<(u32, u32)> = self.ids.iter().copied().zip(0..).collect();
         mine.retain(|&(_, row)| self.plans[row as usize].event != Event::Gone);
@@ -59,9 +67,10 @@ impl<V: Vector> World<V> {
         first(&[(!all, "its grains are not those of the state")])
     }
 
-    fn check_grain(&self, row: u32) -> Result<(), EngineMisfit> {
+    fn check_grain(&self, row: u32, gas: &Gas<V>) -> Result<(), EngineMisfit> {
         let (body, plan) = (&self.bodies[row as usize], &self.plans[row as usize]);
-        let year = self.pace.year();
+        let times = -self.pace.year()..=self.latest(gas);
+        let position = body.position_at(self.since_origin(gas.time()), self.laws.gravity);
         let is_number = |time: f64| time < f64::INFINITY;
         let last = self.last_collisions.as_ref().map_or(0.0, |last| last[row as usize]);
         let has_spin = self
@@ -70,15 +79,17 @@ impl<V: Vector> World<V> {
             .is_none_or(|spins| spins[row as usize].as_ref().iter().all(|x| x.is_finite()));
         first(&[
             (!(body.position.is_finite() && body.velocity.is_finite() && has_spin), "a grain is not finite"),
-            (!((-year..=2.0 * year).contains(&body.time) && is_number(last)), "a grain is at another time"),
-            (!self.has_place(row, body, plan), "a grain is not in its cell"),
+            (!(times.contains(&body.time) && is_number(last)), "a grain is at another time"),
+            (!self.has_place(row, position, plan), "a grain is not in its cell"),
             (!self.may_meet(row, plan.contact), "a grain meets one that does not exist"),
             (!self.may_plan(plan), "a grain has an event that cannot be"),
         ])
     }
 
-    /// Whether the grain in `row` is where its cell or its list has it; nowhere if it has left.
-    fn has_place(&self, row: u32, body: &Body<V>, plan: &Plan) -> bool {
+    /// Whether `position`, that of the grain in `row` at the time of the gas, is where its cell or its list has it; nowhere if it
+    /// has left. At the beginning of the year, to which the turn of a year takes all grains, one that was poured since then may
+    /// have been anywhere on its way.
+    fn has_place(&self, row: u32, position: V, plan: &Plan) -> bool {
         if plan.event == Event::Gone || plan.cell as usize >= self.cells.number() {
             return plan.event == Event::Gone && plan.cell == NONE;
         }
@@ -88,7 +99,7 @@ impl<V: Vector> World<V> {
         };
         let is_between = |axis: usize| {
             let slack = OUTSIDE * width[axis];
-            (low[axis] - slack..=high[axis] + slack).contains(&body.position[axis])
+            (low[axis] - slack..=high[axis] + slack).contains(&position[axis])
         };
         let has_anchor = self
             .lists
