@@ -254,9 +254,9 @@ fn curve_words(report: &SweepReport, curve: &FigureCurve) -> String {
     }
     match curve.not_steady() {
         0 => {}
-        1 => text += "  1 point is not steady: no fit takes it, a longer run.time may\n",
+        1 => text += "  1 point is not steady: no fit takes it; a longer run may settle it\n",
         many => {
-            text += &format!("  {many} points are not steady: no fit takes them, a longer run.time may\n")
+            text += &format!("  {many} points are not steady: no fit takes them; longer runs may settle them\n")
         }
     }
     text
