@@ -14,7 +14,8 @@ pub(super) fn remarks(entries: &[Entry]) -> Vec<String> {
 
 fn sentence(group: &[&Entry]) -> Option<String> {
     let [earlier @ .., last] = group else { return None };
-    let hashes = |entry: &Entry| entry.runs.iter().map(|run| run.log.state_hashes.clone()).collect::<Vec<_>>();
+    let hashes =
+        |entry: &Entry| entry.runs.iter().map(|run| run.log.state_hashes.clone()).collect::<Vec<_>>();
     let are_bits = earlier.iter().all(|entry| hashes(entry) == hashes(last));
     let how = match are_bits {
         true => "bit for bit (equal state hashes at every recording)",

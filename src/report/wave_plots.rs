@@ -150,7 +150,7 @@ fn spectrum(evidence: &Evidence<'_>) -> Option<Plot> {
         ..Plot::default()
     };
     if let Some(slope) = evidence.figure("spectrum_slope") {
-        let name = format!("slope {}", with_error(slope, evidence.standard_error("spectrum_slope")));
+        let name = format!("slope {}", figure_text(slope, evidence.standard_error("spectrum_slope"), evidence.trend("spectrum_slope")));
         plot.curves.push(Curve::new(name, power_law(evidence, &power, slope), Stroke::Dashed, Ink::Text));
         plot.caption =
             "Dashed: the straight line fitted for f = 0.3 … 5 √(g/d). The slope depends on the band."
