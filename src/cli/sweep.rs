@@ -219,7 +219,7 @@ fn closing_words(report: &SweepReport) -> String {
     let with_points = |figure: &&SweepFigure| figure.curves.iter().any(|curve| !curve.points.is_empty());
     let figures: Vec<&SweepFigure> = report.figures.iter().filter(with_points).collect();
     for figure in figures.iter().take(SHOWN_FIGURES) {
-        text += &format!("\n{}\n", figure.name);
+        text += &format!("\n{}\n", figure.labelled(&figure.name));
         for curve in &figure.curves {
             text += &curve_words(report, curve);
         }
@@ -254,9 +254,10 @@ fn curve_words(report: &SweepReport, curve: &FigureCurve) -> String {
     }
     match curve.not_steady() {
         0 => {}
-        1 => text += "  1 point is not steady: no fit takes it, a longer run.time may\n",
+        1 => text += "  1 point is not steady: no fit takes it; a longer run may settle it\n",
         many => {
-            text += &format!("  {many} points are not steady: no fit takes them, a longer run.time may\n")
+            text +=
+                &format!("  {many} points are not steady: no fit takes them; longer runs may settle them\n")
         }
     }
     text

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::extent::Remarks;
 use super::model::{Basis, Compared, Comparison, Contestant, Correlation, Cost};
-use super::{figures, profiles, series};
+use super::{figures, profiles, same_runs, series};
 use crate::number::{in_words, plain};
 use crate::record::contents::RunLog;
 use crate::scenario::kinds::Kinds;
@@ -67,7 +67,7 @@ pub fn assemble(head: Head, entries: Vec<Entry>) -> Comparison {
         name(&mut comparison, &run.log);
     }
     comparison.remarks = remarks(&entries);
-    comparison.remarks.extend(same_bits(&entries));
+    comparison.remarks.extend(same_runs::remarks(&entries));
     comparison.remarks.extend(head.remarks);
     if !entries.is_empty() {
         let mut left_out = Remarks::new();
@@ -115,32 +115,6 @@ fn remarks(entries: &[Entry]) -> Vec<String> {
         remarks.push(format!("{} has {} of {most} runs.", entry.label, entry.runs.len()));
     }
     remarks
-}
-
-/// Contestants whose runs are the same bit for bit, a sentence for each group of them.
-fn same_bits(entries: &[Entry]) -> Vec<String> {
-    let hashes = |entry: &Entry| -> Option<Vec<(u32, Vec<String>)>> {
-        let runs = entry.runs.iter().map(|run| (run.number, run.log.state_hashes.clone()));
-        let runs: Vec<(u32, Vec<String>)> = runs.collect();
-        (!runs.is_empty() && runs.iter().all(|(_, hashes)| !hashes.is_empty())).then_some(runs)
-    };
-    let all: Vec<Option<Vec<(u32, Vec<String>)>>> = entries.iter().map(hashes).collect();
-    let is_first = |k: &usize| all[*k].is_some() && !all[..*k].contains(&all[*k]);
-    let groups = (0..entries.len()).filter(is_first).map(|first| {
-        let same = (first..entries.len()).filter(|k| all[*k] == all[first]);
-        same.map(|k| entries[k].label.as_str()).collect::<Vec<&str>>()
-    });
-    let several = groups.filter(|group| group.len() > 1);
-    several
-        .map(|group| {
-            let [earlier @ .., last] = &group[..] else { return String::new() };
-            format!(
-                "{} and {last} made the same runs, bit for bit (equal state hashes at every recording): what is said of \
-                 one holds for the others.",
-                earlier.join(", ")
-            )
-        })
-        .collect()
 }
 
 /// How long the differences of single runs remember, a sentence for each contestant: their errors rest on that.

@@ -178,7 +178,9 @@ pub(crate) fn unit_of(name: &str, dimension: usize) -> Dimension {
     let pressure = [1, if dimension == 3 { -1 } else { 0 }, -2];
     let [mass, length, time] = match name {
         "rotational_energy" | "kinetic_energy_final" | "kinetic_energy_initial" => [1, 2, -2],
-        name if name.ends_with("temperature") || name.starts_with("temperature_") => [1, 2, -2],
+        "temperature" => [1, 2, -2],
+        // Of all grains, or of a species.
+        name if name.starts_with("granular_temperature") => [1, 2, -2],
         "pressure" => pressure,
         // Of all walls, or of one by its name.
         name if name.starts_with("wall_shear_stress") || name.starts_with("wall_normal_stress") => pressure,

@@ -16,6 +16,7 @@ mod memory;
 pub mod model;
 mod profiles;
 mod read;
+mod same_runs;
 mod scatter;
 mod series;
 mod stability;

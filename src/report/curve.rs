@@ -60,9 +60,9 @@ impl Curve {
         Self { name: name.into(), points, errors: Vec::new(), reach: 0.0, stroke, ink }
     }
 
-    /// Ends of its band of one standard error, where it has one.
+    /// Ends of its band or bars of one standard error, where it has some.
     pub(super) fn band_ends(&self) -> impl Iterator<Item = f64> + Clone + '_ {
-        let is_banded = matches!(self.stroke, Stroke::Patterned(_));
+        let is_banded = matches!(self.stroke, Stroke::Patterned(_) | Stroke::Dots);
         let known = self.points.iter().zip(&self.errors).filter(move |_| is_banded);
         known.flat_map(|(point, error)| [point[1] - error, point[1] + error])
     }

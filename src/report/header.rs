@@ -203,5 +203,5 @@ fn entry(title: &str, value: &str, unit: &str, notes: &[String], doubt: Option<&
     let unit = if unit.is_empty() { String::new() } else { format!(" <small>{}</small>", escape(unit)) };
     let notes: String = notes.iter().map(|note| format!("<dd>{}</dd>", escape(note))).collect();
     let doubt = doubt.map_or_else(String::new, |text| format!("<dd class=\"doubt\">{}</dd>", escape(text)));
-    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{notes}{doubt}</div>\n", escape(title), escape(value))
+    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{doubt}{notes}</div>\n", escape(title), escape(value))
 }

@@ -3,7 +3,7 @@
 use super::energy_plots::Haff;
 use super::evidence::Evidence;
 use crate::comparison::laws;
-use crate::number::{figure_text, number};
+use crate::number::{NOT_STEADY, figure_text, number};
 use crate::scenario::model::EngineKind;
 use crate::statistics::Trend;
 use crate::statistics::student::threshold;
@@ -110,7 +110,7 @@ impl Reference {
                 _ => "agrees".to_owned(),
             },
             (Agreement::NotSteady, _) => {
-                "no verdict: the mean of what drifts is compared with nothing".to_owned()
+                format!("no verdict: {NOT_STEADY}")
             }
             (Agreement::Borderline, _) => "agrees within its 95 % interval".to_owned(),
             (Agreement::Differs, Some(error)) if error > 0.0 => {

@@ -83,7 +83,7 @@ fn plot(sweep: &SweepReport, figure: &SweepFigure) -> Plot {
         title: in_words(&figure.name),
         caption: caption(sweep, figure),
         x_label: sweep.abscissa.name.clone(),
-        y_label: in_words(&figure.name),
+        y_label: figure.labelled(&in_words(&figure.name)),
         x_scale,
         y_scale,
         curves,
@@ -157,7 +157,7 @@ fn caption(sweep: &SweepReport, figure: &SweepFigure) -> String {
 fn table(sweep: &SweepReport, figure: &SweepFigure) -> String {
     let mut html = format!(
         "<details><summary>{}</summary>\n<div class=\"references\"><table>\n<thead><tr><th>{}</th>",
-        escape(&in_words(&figure.name)),
+        escape(&figure.labelled(&in_words(&figure.name))),
         escape(&sweep.abscissa.name)
     );
     for curve in &figure.curves {

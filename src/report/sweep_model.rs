@@ -44,6 +44,8 @@ pub struct Abscissa {
 pub struct SweepFigure {
     /// Its name in the summary.
     pub name: String,
+    /// Its unit, as `kg/(m·s^2)`; empty for a pure number.
+    pub unit: String,
     /// One for every combination of the other varied keys and engines.
     pub curves: Vec<FigureCurve>,
 }
@@ -111,6 +113,13 @@ impl MeanPoint {
     /// Its value and error as text, or that it is not steady.
     pub fn text(&self) -> String {
         figure_text(self.value, self.standard_error, self.trend)
+    }
+}
+
+impl SweepFigure {
+    /// `title` with the unit in brackets.
+    pub fn labelled(&self, title: &str) -> String {
+        if self.unit.is_empty() { title.to_owned() } else { format!("{title} [{}]", self.unit) }
     }
 }
 

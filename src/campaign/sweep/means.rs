@@ -5,9 +5,11 @@ use serde_json::{Map, Value, json};
 use super::plan::{Case, Plan};
 use super::power_law::power_law;
 use super::runs::{Ended, Row};
+use crate::comparison::unit_of;
 use crate::observe::measure::Figure;
 use crate::report::{Abscissa, FigureCurve, MeanPoint, SweepCase, SweepFigure, SweepReport};
 use crate::run::NUMERICS;
+use crate::run::series::unit_name;
 use crate::scenario::model::AnyScenario;
 use crate::simulation::figures::{figure_of, is_attribute, trend_of_runs};
 use crate::statistics::{Estimate, Trend, average};
@@ -133,7 +135,16 @@ fn figure(plan: &Plan, abscissa: &Abscissa, points: &[GridPoint<'_>], name: &str
             curve.power_law = power_law(&points);
         }
     }
-    SweepFigure { name: name.to_owned(), curves }
+    SweepFigure { name: name.to_owned(), unit: unit(&plan.cases[0].scenario, name), curves }
+}
+
+/// The unit of a figure in the names of `scenario`.
+fn unit(scenario: &AnyScenario, name: &str) -> String {
+    let (dimension, units) = match scenario {
+        AnyScenario::Two(scenario) => (2, &scenario.units),
+        AnyScenario::Three(scenario) => (3, &scenario.units),
+    };
+    Some(unit_name(unit_of(name, dimension), units)).filter(|unit| unit != "1").unwrap_or_default()
 }
 
 /// All that the page, the JSON and the last words tell.

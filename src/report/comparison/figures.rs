@@ -39,7 +39,11 @@ fn row(comparison: &Comparison, figure: &ComparedFigure) -> String {
         // What is not steady here says so in place of its number already.
         let verdict = difference
             .filter(|of| of.verdict != Verdict::NotSteady || trend.is_none_or(Trend::is_steady))
-            .map(verdict)
+            .map(
+                |of| {
+                    if of.verdict == Verdict::NotSteady { ("borderline", "no verdict") } else { verdict(of) }
+                },
+            )
             .map_or_else(String::new, |(class, word)| format!("<br><span class=\"{class}\">{word}</span>"));
         let _ = write!(html, "<td class=\"number\">{}{verdict}</td>", escape(&text));
     }
