@@ -69,7 +69,7 @@ pub enum InitialError {
     },
     /// The log holds other numbers of its species.
     #[error(
-        "initial.positions: the log's last state holds {} grains of its species, the scenario says {}; give the          [[particles.species]] share = {}",
+        "initial.positions: the log's last state holds {} grains of its species, the scenario says {}; give the [[particles.species]] share = {}",
         sum_of(found),
         sum_of(expected),
         shares_of(found)

@@ -69,23 +69,24 @@ fn a_run_of_three_intervals_has_four_recordings_and_four_states() {
 
 #[test]
 fn a_recording_comes_with_the_step_that_ends_at_its_time_but_for_rounding() {
-    // 3 · 0.2 is 0.6000000000000001, and six steps of 0.1 are 0.6.
+    // Five steps of 0.09 add up to one step of double precision less than 0.45, and four times as many to less than 4 · 0.45.
     let (head, _) = include_str!("scenarios/every.toml").split_once("[run]").unwrap();
-    for (spacing, first) in [("every = 0.2\nstate_every = 0.2\n", 0.0), ("frames = 10\nstates = 9\n", 0.2)] {
+    for (spacing, first) in [("every = 0.45\nstate_every = 0.45\n", 0.0), ("frames = 10\nstates = 9\n", 0.45)]
+    {
         let place = Place::new();
-        std::fs::write(place.path("a.toml"), format!("{head}[run]\ntime = 2.0\n[record]\n{spacing}"))
+        std::fs::write(place.path("a.toml"), format!("{head}[run]\ntime = 4.5\n[record]\n{spacing}"))
             .unwrap();
-        let steps = ["--set", "engine.time_step={ fixed = 0.1 }"];
+        let steps = ["--set", "engine.time_step={ fixed = 0.09 }"];
         let run = ["run", "a.toml", "--engine", "cba", "--out", "run", "--quiet"];
         place.obeyed(&[&run[..], &steps].concat());
         let found = times(&place, "run");
         assert_eq!(found.len(), 11, "{found:?}");
         for (k, time) in found.iter().enumerate() {
-            assert!((time - 0.2 * k as f64).abs() < 1e-12, "{found:?}");
+            assert!((time - 0.45 * k as f64).abs() < 1e-12, "{found:?}");
         }
         let states = read_states::<DVec2>(&place.path("run/log.mcap")).unwrap();
         for (k, state) in states.iter().enumerate() {
-            assert!((state.time - first - 0.2 * k as f64).abs() < 1e-12, "state {k} at {}", state.time);
+            assert!((state.time - first - 0.45 * k as f64).abs() < 1e-12, "state {k} at {}", state.time);
         }
         assert!(place.obeyed(&["replay", "run", "--verify"]).contains("identical"));
     }
