@@ -212,6 +212,46 @@ fn nothing_is_left_for_later() {
     });
 }
 
+/// Name of the function below an attribute.
+fn function_below<'a>(mut lines: impl Iterator<Item = &'a str>) -> &'a str {
+    lines.find_map(|line| line.trim().strip_prefix("fn ")?.split('(').next()).unwrap_or_default()
+}
+
+/// Whether a line of `scripts` runs the ignored test `name`: all ignored ones of its `target`, or those with such a name.
+fn runs_ignored(scripts: &str, target: &str, name: &str) -> bool {
+    let call = format!("{target} -- --ignored");
+    scripts.lines().filter_map(|line| Some(line.split_once(&call)?.1)).any(|words| {
+        let mut filters = words.split_whitespace().filter(|word| !word.starts_with("--")).peekable();
+        filters.peek().is_none() || filters.any(|filter| name.contains(filter))
+    })
+}
+
+#[test]
+fn a_job_runs_every_ignored_test() {
+    let place = Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci");
+    let scripts = ["run", "full"].map(|name| fs::read_to_string(place.join(name)).unwrap()).concat();
+    let mut found = 0;
+    for file in ["src", "tests"].into_iter().flat_map(sources) {
+        let target = match file.path.strip_prefix("tests/") {
+            Some(rest) => format!("--test {}", rest.split(['/', '.']).next().unwrap()),
+            None => "--lib".to_owned(),
+        };
+        let mut lines = file.text.lines();
+        while let Some(line) = lines.next() {
+            if line.trim().starts_with(concat!("#[ign", "ore")) {
+                let name = function_below(lines.clone());
+                assert!(
+                    runs_ignored(&scripts, &target, name),
+                    "{}: {name}: `cargo test --release {target} -- --ignored {name}` belongs into .ci/full or .ci/run",
+                    file.path
+                );
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 10, "{found} ignored tests: the counter has lost its way");
+}
+
 #[test]
 fn files_are_short_and_named_by_their_subject() {
     for file in ["src", "tests"].into_iter().flat_map(sources) {
@@ -340,6 +380,9 @@ fn the_rules_see_what_breaks_them() {
     assert_eq!(modules_used("use crate::engine::{A, B}; // crate").collect::<Vec<_>>(), ["engine"]);
     assert_eq!(word_in("let m: HashMap<u8, u8>;", &["HashMap"]), Some("HashMap"));
     assert_eq!(word_in("MyHashMapped", &["HashMap"]), None);
+    let script = "cargo test --release --test a -- --ignored --nocapture long\ncargo test --test b -- --ignored";
+    assert!(runs_ignored(script, "--test a", "a_long_run") && runs_ignored(script, "--test b", "any"));
+    assert!(!runs_ignored(script, "--test a", "a_short_run") && !runs_ignored(script, "--lib", "any"));
     let code = file("src/space.rs", "a\n// b\nc // d\n\"http://e\"\n");
     assert_eq!(code.code().collect::<Vec<_>>(), [(1, "a"), (3, "c "), (4, "\"http://e\"")]);
     let text =

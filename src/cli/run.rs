@@ -125,7 +125,16 @@ fn resume(arguments: &RunArguments) -> Exit {
 fn opening_words(resumption: &Resumption) -> String {
     let log = resumption.log().display();
     let cut_off = resumption.cut_off().map(|sentence| format!("{sentence}\n")).unwrap_or_default();
+    let anew = match resumption.begun_anew() {
+        [] => String::new(),
+        names => format!(
+            "the log is of an earlier version, in which these measures remember other things: {}; they begin anew here, and \
+             their figures are those of what follows\n",
+            names.join(", ")
+        ),
+    };
     cut_off
+        + &anew
         + &match resumption.time() {
             Some(time) => format!("goes on from the state at t = {} in {log}\n", plain(time, 6)),
             None => format!("{log} holds no complete state: the run begins again from its scenario\n"),

@@ -294,6 +294,19 @@ impl<V: Vector> LocalFlow<V> {
         squares[axis] * V::DIMENSION as f64 / all
     }
 
+    /// Mean speed about the flow of the grains in bins that say something [length/time]; zero where none does.
+    pub(crate) fn mean_speed(&self, gas: &Gas<V>) -> f64 {
+        let bins = self.each_bin(gas, |flow, rows| {
+            let speed = |row: usize| {
+                let (position, velocity) = (gas.positions()[row], gas.velocities()[row]);
+                flow.peculiar(gas.grain_at(row).mass, position, velocity).length()
+            };
+            rows.map(speed).sum::<f64>()
+        });
+        let grains = self.grains();
+        if grains == 0 { 0.0 } else { bins.into_iter().flatten().sum::<f64>() / grains as f64 }
+    }
+
     /// Σ m (v − u)² of each component.
     fn squares(&self) -> V {
         self.flows.iter().flatten().fold(V::ZERO, |sum, flow| sum + flow.squares)

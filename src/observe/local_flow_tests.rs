@@ -60,6 +60,11 @@ fn check<V: Vector>(size: V) {
             assert!((moving.0 - at_rest.0).abs() < 1e-9, "{moving:?} beside {at_rest:?}");
             let gas = gas(100, 1500, size, is_mixture, &motion);
             let whole = temperature(&gas);
+            let speed = LocalFlow::of(&gas, grains_of_a_bin::<V>()).mean_speed(&gas);
+            // ⟨|v|⟩ √(m/T) is √(π/2) in 2D and √(8/π) in 3D; half of the grains of a mixture are slower by √8.
+            let maxwell = V::MEAN_RELATIVE_SPEED * 0.5_f64.sqrt();
+            let share = if is_mixture { 0.5 + 0.5 / 8.0_f64.sqrt() } else { 1.0 };
+            assert!((speed / (maxwell * share) - 1.0).abs() < 0.05, "{speed}");
             let is_linear = motion.gradient[0] != V::ZERO;
             assert_eq!(whole > 3.0, is_linear, "about the mean of all grains it is {whole}");
         }

@@ -4,6 +4,7 @@ pub mod beginning;
 pub mod folder;
 mod last_good;
 mod looks;
+mod older;
 mod recorder;
 mod rerun;
 pub mod resume;
@@ -45,7 +46,7 @@ pub const NUMERICS: u32 = 2;
 /// carries while grains rest on it.
 pub const OBSERVATION: u32 = 2;
 /// Where a log says it.
-const OBSERVATION_KEY: &str = "observation";
+pub(crate) const OBSERVATION_KEY: &str = "observation";
 
 /// Why a run could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]

@@ -9,7 +9,7 @@ use crate::record::LOG;
 use crate::record::error::LogError;
 use crate::record::reader::{Origin, read_origin};
 use crate::record::summary::{failure, summary_in};
-use crate::run::NUMERICS;
+use crate::run::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use crate::scenario::model::AnyScenario;
 
 /// The version that writes.
@@ -56,6 +56,12 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
     let of_log = |key: &str| metadata.get(key).map_or("?", String::as_str);
     if let Some(other) = other_program(of_log("version"), of_log("numerics")) {
         return Standing::Foreign(other);
+    }
+    let observation = metadata.get(OBSERVATION_KEY).map_or("1", String::as_str);
+    if observation != OBSERVATION.to_string() {
+        return Standing::Foreign(format!(
+            "was written by a release whose figures mean other things: observation {observation}, this is {OBSERVATION}"
+        ));
     }
     let summary = match summary_in(folder) {
         Ok(Some(summary)) => summary,
