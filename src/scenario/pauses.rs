@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn grains_at_rest_are_told_apart_by_their_fall() {
         let falling = "dimension = 2\ngravity = [0.0, -9.81]\n[engine]\nkind = \"event-driven\"\n\
-            [domain]\nsize = [4e-6, 4e-6]\n[boundary]\ny = { lower = { wall = \"smooth\" }, upper = { wall = \"open\" } }\n\
+            [domain]\nsize = [4e-6, 4e-6]\n[boundary]\ny = { lower = { wall = \"smooth\" }, upper = \"open\" }\n\
             [particles]\ncount = 10\ndiameter = 1e-7\nrestitution = 0.9\n[initial]\nvelocities = \"rest\"\n\
             [run]\ncollisions_per_particle = 2.0\n[record]\nframes = 4\n";
         // 10⁻⁷/√(2 · 9.81 · 4·10⁻⁶) = 1.1·10⁻⁵.
