@@ -380,7 +380,8 @@ fn the_rules_see_what_breaks_them() {
     assert_eq!(modules_used("use crate::engine::{A, B}; // crate").collect::<Vec<_>>(), ["engine"]);
     assert_eq!(word_in("let m: HashMap<u8, u8>;", &["HashMap"]), Some("HashMap"));
     assert_eq!(word_in("MyHashMapped", &["HashMap"]), None);
-    let script = "cargo test --release --test a -- --ignored --nocapture long\ncargo test --test b -- --ignored";
+    let script =
+        "cargo test --release --test a -- --ignored --nocapture long\ncargo test --test b -- --ignored";
     assert!(runs_ignored(script, "--test a", "a_long_run") && runs_ignored(script, "--test b", "any"));
     assert!(!runs_ignored(script, "--test a", "a_short_run") && !runs_ignored(script, "--lib", "any"));
     let code = file("src/space.rs", "a\n// b\nc // d\n\"http://e\"\n");
