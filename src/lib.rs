@@ -17,10 +17,11 @@
 //! next event; those of all grains wait in a calendar whose pages follow the rate at which things happen.
 //!
 //! The floors of the house, each built on those above it only: mathematics ([`space`], [`random`],
-//! [`statistics`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
+//! [`statistics`], [`number`]), [`matter`], [`law`]s, [`engine`]s, observation ([`observe`], [`record`]), runs
 //! ([`scenario`], [`simulation`], [`run`], [`replay`], [`export`], [`comparison`], [`report`], [`view`]), campaigns of many runs
 //! ([`campaign`]) and the command line ([`cli`]).
 
+pub mod number;
 pub mod random;
 pub mod space;
 pub mod statistics;

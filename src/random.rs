@@ -31,6 +31,8 @@ pub enum Phase {
     Rotation = 10,
     /// Seeds of independent repetitions of a run.
     Replica = 11,
+    /// Places in the course of a run at which measures sample.
+    Samples = 12,
 }
 
 /// All streams of one seed.

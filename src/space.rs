@@ -61,6 +61,12 @@ pub trait Vector:
     ///
     /// 2D (1 − 7ν/16)/(1 − ν)² (Henderson 1975); 3D (1 − ν/2)/(1 − ν)³ (Carnahan and Starling 1969).
     fn contact_correlation(volume_fraction: f64) -> f64;
+    /// The same of grains of two species of a fluid mixture at `volume_fraction` ν, x = `crowding` the harmonic mean of their
+    /// diameters times V₁ Σ n d^{D−1} over all species; x = ν where all are of one size.
+    ///
+    /// 2D 1/(1 − ν) + 9x/(16 (1 − ν)²) (Jenkins and Mancini 1987); 3D 1/(1 − ν) + 3x/(2 (1 − ν)²) + x²/(2 (1 − ν)³) (Boublík 1970;
+    /// Mansoori, Carnahan, Starling and Leland 1971).
+    fn pair_contact_correlation(volume_fraction: f64, crowding: f64) -> f64;
     /// −(g·n)n: the velocity that two equal elastic grains of relative velocity g = `relative` exchange, for the
     /// impact parameter of molecular chaos: uniform on [−d, d] in 2D, uniform in the disc of radius d in 3D.
     /// Its length is their normal speed, its direction the contact normal n that points against g.
@@ -196,6 +202,10 @@ impl Vector for DVec2 {
         let free = 1.0 - volume_fraction;
         (1.0 - 0.4375 * volume_fraction) / (free * free)
     }
+    fn pair_contact_correlation(volume_fraction: f64, crowding: f64) -> f64 {
+        let free = 1.0 - volume_fraction;
+        1.0 / free + 0.5625 * crowding / (free * free)
+    }
     #[inline(always)]
     fn exchange(relative: Self, random: &mut Stream) -> Self {
         // With g⊥ to the left of g, n = (b g⊥ − √(1 − b²) g)/|g|; of g·n = −|g| √(1 − b²) no root of |g|² is left.
@@ -275,6 +285,10 @@ impl Vector for DVec3 {
     fn contact_correlation(volume_fraction: f64) -> f64 {
         let free = 1.0 - volume_fraction;
         (1.0 - 0.5 * volume_fraction) / (free * free * free)
+    }
+    fn pair_contact_correlation(volume_fraction: f64, crowding: f64) -> f64 {
+        let (free, share) = (1.0 - volume_fraction, crowding / (1.0 - volume_fraction));
+        (1.0 + 1.5 * share + 0.5 * share * share) / free
     }
     #[inline(always)]
     fn exchange(relative: Self, random: &mut Stream) -> Self {

@@ -1,6 +1,18 @@
 //! Means with their errors, and straight lines through points: always the same bits for the same numbers.
 
+mod long_run;
+#[cfg(test)]
+mod series;
+mod steadiness;
+mod steady;
+#[cfg(test)]
+#[path = "statistics/steady_tests.rs"]
+mod steady_tests;
+pub mod student;
+
 use std::ops::Range;
+
+pub use steady::SteadyEstimate;
 
 /// Blocks that a steady stretch of a run is cut into.
 pub const BLOCKS: usize = 10;
@@ -37,6 +49,18 @@ impl Trend {
             Trend::Wandering => "wandering",
         }
     }
+
+    /// The trend of that name; `None` where there is none.
+    pub fn of_name(name: &str) -> Option<Trend> {
+        [Trend::Steady, Trend::Rising, Trend::Falling, Trend::Wandering]
+            .into_iter()
+            .find(|trend| trend.name() == name)
+    }
+
+    /// Whether it is steady.
+    pub fn is_steady(self) -> bool {
+        self == Trend::Steady
+    }
 }
 
 /// A straight line y = intercept + slope·x by least squares, every point with the same weight.
@@ -50,7 +74,8 @@ pub struct StraightLine {
     pub slope_error: Option<f64>,
     /// Standard error of the intercept from the scatter about the line; `None` for two points.
     pub intercept_error: Option<f64>,
-    /// R², the share of the variance of y that the line explains; 1 when y does not vary at all.
+    /// R², the share of the variance of y that the line explains; not a number where y does not vary: there is nothing
+    /// to explain.
     pub r_squared: f64,
 }
 
@@ -113,7 +138,7 @@ pub fn straight_line(x: &[f64], y: &[f64]) -> Option<StraightLine> {
         intercept: y_mean - slope * x_mean,
         slope_error: variance.map(|s| (s / xx).sqrt()),
         intercept_error: variance.map(|s| (s * (1.0 / x.len() as f64 + x_mean * x_mean / xx)).sqrt()),
-        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
+        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { f64::NAN },
     })
 }
 
@@ -151,6 +176,13 @@ mod tests {
         assert_eq!(straight_line(&[1.0], &[0.0]), None);
         assert_eq!(straight_line(&[0.0, 1.0], &[0.0, f64::NAN]), None);
         assert_eq!(straight_line(&[0.0, 1.0], &[3.0, 1.0]).unwrap().slope_error, None);
+    }
+
+    #[test]
+    fn a_line_through_equal_values_explains_nothing() {
+        let flat = straight_line(&[0.0, 1.0, 2.0], &[0.5; 3]).unwrap();
+        assert_eq!((flat.slope, flat.intercept), (0.0, 0.5));
+        assert!(flat.r_squared.is_nan(), "{}", flat.r_squared);
     }
 
     #[test]

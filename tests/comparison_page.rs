@@ -9,7 +9,7 @@ use grainflow::comparison::model::{
 use grainflow::observe::measure::{Column, Dimension};
 use grainflow::record::contents::{Frame, Walls};
 use grainflow::report::{judgements, render_comparison};
-use grainflow::statistics::Estimate;
+use grainflow::statistics::{Estimate, Trend};
 
 const PURE: Dimension = Dimension { mass: 0, length: 0, time: 0 };
 const LENGTH: Dimension = Dimension { mass: 0, length: 1, time: 0 };
@@ -106,6 +106,7 @@ fn figure() -> ComparedFigure {
         name: "pressure".to_owned(),
         unit: ENERGY,
         values: vec![estimate(1.02), None, estimate(1.0)],
+        trends: vec![Some(Trend::Steady), None, Some(Trend::Steady)],
         differences: series
             .differences
             .iter()

@@ -3,14 +3,16 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod place;
+mod signal;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::time::{Duration, Instant, SystemTime};
 
 use place::Place;
 use serde_json::{Map, Value};
+use signal::send;
 
 /// A gas that is done in no time.
 const GAS: &str = "title = \"Gas <of tests>\"
@@ -163,6 +165,12 @@ fn mistakes_are_told_before_anything_is_written() {
     assert!(said.contains("--vary #1 'particles.restitution=1.5': particles.restitution: "), "{said}");
     let said = place.refused(&["--vary", RESTITUTIONS, "--figure", "wall_shear_stres"]);
     assert!(said.contains("did you mean `wall_shear_stress`?"), "{said}");
+    let said = place.refused(&["--vary", RESTITUTIONS, "--figure", "stress"]);
+    assert!(said.contains("did you mean `wall_shear_stress`"), "{said}");
+    let said = place.refused(&["--vary", "particles.restitution=[0.9,", "0.7]"]);
+    assert!(said.contains("quote it: 'particles.restitution=[0.9, 0.7]'"), "{said}");
+    let said = place.refused(&["--vary", RESTITUTIONS, "--seed", "-1"]);
+    assert!(said.contains("give a whole number from 0 to 9223372036854775807"), "{said}");
     let said = place.refused(&["--vary", RESTITUTIONS, "--engines", "hsmc,dsmcc"]);
     assert!(said.contains("--engines 'dsmcc'"), "{said}");
     assert!(place.refused(&["--vary", RESTITUTIONS, "--set", "run.steps=-1"]).contains("--set #1"));
@@ -187,6 +195,35 @@ fn a_second_call_makes_only_what_is_missing() {
     assert_eq!(place.column("out/gas-sweep", "status"), ["kept", "done", "done"]);
     let hashes: Vec<&String> = before.iter().map(|row| &row["state_hash"]).collect();
     assert_eq!(place.column("out/gas-sweep", "state_hash").iter().collect::<Vec<_>>(), hashes);
+}
+
+#[test]
+fn a_finished_case_whose_log_was_cut_is_run_again_and_one_with_a_foreign_summary_is_refused() {
+    let place = Place::with_gas();
+    place.ends(&["--vary", RESTITUTIONS, "--quiet"], 0);
+    let log = |value: &str| place.path(&format!("out/gas-sweep/restitution={value}/log.mcap"));
+    let whole = fs::read(log("0.8")).unwrap();
+    // Half, and inside the index.
+    for length in [whole.len() / 2, whole.len() - 40, whole.len() - 1] {
+        fs::write(log("0.8"), &whole[..length]).unwrap();
+        let (text, said) = place.ends(&["--vary", RESTITUTIONS], 0);
+        assert!(text.contains("3 runs, 1 done, 2 kept"), "{length}: {text}");
+        assert!(said.contains("restitution=0.8: was finished and is run again"), "{length}: {said}");
+        assert!(said.contains(&format!("cut off after {length} bytes")), "{length}: {said}");
+        assert_eq!(fs::read(log("0.8")).unwrap(), whole, "{length}");
+    }
+    // Before its scenario is complete nothing tells whose log it is.
+    let scenario = whole.windows(13).position(|name| name == b"scenario.toml").unwrap();
+    fs::write(log("0.8"), &whole[..scenario + 30]).unwrap();
+    let (_, said) = place.ends(&["--vary", RESTITUTIONS], 2);
+    assert!(said.contains("does not say which run it is of") && said.contains("--force"), "{said}");
+    fs::write(log("0.8"), &whole).unwrap();
+    // A summary of another run beside the log of this one.
+    let summaries =
+        ["0.9", "0.8"].map(|value| place.path(&format!("out/gas-sweep/restitution={value}/summary.json")));
+    fs::copy(&summaries[0], &summaries[1]).unwrap();
+    let (_, said) = place.ends(&["--vary", RESTITUTIONS], 2);
+    assert!(said.contains("restitution=0.8 has a summary and a log that end in different states"), "{said}");
 }
 
 #[test]
@@ -267,8 +304,7 @@ fn an_interrupt_leaves_a_table_and_the_next_call_goes_on() {
         std::thread::sleep(Duration::from_millis(20));
     }
     std::thread::sleep(Duration::from_millis(200));
-    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(interrupt.success());
+    send("-INT", &child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(place.column("out/gas-sweep", "status"), ["interrupted", "not run", "not run"]);
     assert!(
@@ -305,4 +341,40 @@ fn the_page_needs_nothing_else() {
     let said = text.split("exponent ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     let difference = said.parse::<f64>().unwrap() - law["exponent"].as_f64().unwrap();
     assert!(difference.abs() < 0.1 * law["exponent_standard_error"].as_f64().unwrap(), "{said}: {law}");
+}
+
+#[test]
+fn what_is_not_steady_is_said_and_left_out_of_fits() {
+    let place = Place::with_gas();
+    let more = ["--vary", "particles.count=[20, 40, 100, 200]", "--figure", "wall_normal_stress"];
+    place.ends(&more, 0);
+    // Summaries made up: the stress is that of a count, but for one that still rises.
+    for (count, stress) in [(20, 2.0), (40, 4.0), (100, 7.0), (200, 20.0)] {
+        let file = format!("out/gas-sweep/count={count}/summary.json");
+        let mut summary = place.json(&file);
+        let mut set =
+            |ending: &str, value: Value| summary.insert(format!("wall_normal_stress{ending}"), value);
+        set("", stress.into());
+        set("_standard_error", (0.01 * stress).into());
+        set("_degrees_of_freedom", 17.0.into());
+        set("_steady", (count != 100).into());
+        set("_trend", if count == 100 { "rising".into() } else { Value::Null });
+        fs::write(place.path(&file), Value::Object(summary).to_string()).unwrap();
+    }
+    let (text, _) = place.ends(&more, 0);
+    assert!(text.contains("particles.count = 100        not steady (rising, mean 7)"), "{text}");
+    assert!(text.contains("1 point is not steady: no fit takes it"), "{text}");
+    assert_eq!(place.column("out/gas-sweep", "wall_normal_stress_steady"), ["true", "true", "false", "true"]);
+    let json = place.json("out/gas-sweep/sweep.json");
+    let law = &json["power_laws"][0];
+    assert!((law["exponent"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{law}");
+    assert_eq!((&law["points"], &law["points_left_out_as_not_steady"]), (&3.into(), &1.into()));
+    let of = |point: usize| &json["points"][point]["figures"]["wall_normal_stress"];
+    assert_eq!((&of(2)["steady"], &of(2)["trend"]), (&false.into(), &"rising".into()));
+    assert_eq!((&of(0)["steady"], &of(0)["degrees_of_freedom"]), (&true.into(), &17.0.into()));
+    let page = fs::read_to_string(place.path("out/gas-sweep/sweep.html")).unwrap();
+    assert!(
+        page.contains("fill:none;stroke:") && page.contains("The ring is a mean of runs that are not steady")
+    );
+    assert!(page.contains("<td class=\"number\">not steady (rising, mean 7)</td>"));
 }

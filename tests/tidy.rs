@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// The floors, lowest first, with their modules in the order of `src/lib.rs`.
 const FLOORS: [(&str, &[&str]); 8] = [
-    ("mathematics", &["random", "space", "statistics"]),
+    ("mathematics", &["number", "random", "space", "statistics"]),
     ("matter", &["matter"]),
     ("laws", &["law"]),
     ("engines", &["engine"]),
@@ -212,6 +212,46 @@ fn nothing_is_left_for_later() {
     });
 }
 
+/// Name of the function below an attribute.
+fn function_below<'a>(mut lines: impl Iterator<Item = &'a str>) -> &'a str {
+    lines.find_map(|line| line.trim().strip_prefix("fn ")?.split('(').next()).unwrap_or_default()
+}
+
+/// Whether a line of `scripts` runs the ignored test `name`: all ignored ones of its `target`, or those with such a name.
+fn runs_ignored(scripts: &str, target: &str, name: &str) -> bool {
+    let call = format!("{target} -- --ignored");
+    scripts.lines().filter_map(|line| Some(line.split_once(&call)?.1)).any(|words| {
+        let mut filters = words.split_whitespace().filter(|word| !word.starts_with("--")).peekable();
+        filters.peek().is_none() || filters.any(|filter| name.contains(filter))
+    })
+}
+
+#[test]
+fn a_job_runs_every_ignored_test() {
+    let place = Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci");
+    let scripts = ["run", "full"].map(|name| fs::read_to_string(place.join(name)).unwrap()).concat();
+    let mut found = 0;
+    for file in ["src", "tests"].into_iter().flat_map(sources) {
+        let target = match file.path.strip_prefix("tests/") {
+            Some(rest) => format!("--test {}", rest.split(['/', '.']).next().unwrap()),
+            None => "--lib".to_owned(),
+        };
+        let mut lines = file.text.lines();
+        while let Some(line) = lines.next() {
+            if line.trim().starts_with(concat!("#[ign", "ore")) {
+                let name = function_below(lines.clone());
+                assert!(
+                    runs_ignored(&scripts, &target, name),
+                    "{}: {name}: `cargo test --release {target} -- --ignored {name}` belongs into .ci/full or .ci/run",
+                    file.path
+                );
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 10, "{found} ignored tests: the counter has lost its way");
+}
+
 #[test]
 fn files_are_short_and_named_by_their_subject() {
     for file in ["src", "tests"].into_iter().flat_map(sources) {
@@ -279,26 +319,57 @@ fn may_be_passed_on(expression: &str) -> bool {
     expression.split(" AND ").all(|part| part.split(" OR ").any(|choice| LICENCES.contains(&choice.trim())))
 }
 
-#[test]
-fn dependencies_are_free_locked_and_old_enough() {
-    assert!(may_be_passed_on("(MIT OR GPL-3.0) AND Unicode-3.0") && may_be_passed_on("Unlicense/MIT"));
-    assert!(!may_be_passed_on("MIT AND GPL-3.0") && !may_be_passed_on("LGPL-2.1-or-later"));
+/// What cargo says when it is called with `arguments` for this project.
+fn cargo(arguments: &[&str]) -> String {
     let mut cargo = std::process::Command::new(env!("CARGO"));
-    cargo.args(["metadata", "--format-version", "1", "--locked", "--offline"]);
-    let output = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let packages = metadata["packages"].as_array().unwrap();
+    let output = cargo.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The packages that `Cargo.lock` names and `choice` leaves, as cargo describes them.
+fn packages(choice: &[&str]) -> Vec<serde_json::Value> {
+    let words = [&["metadata", "--format-version", "1", "--locked"], choice].concat();
+    let mut metadata: serde_json::Value = serde_json::from_str(&cargo(&words)).unwrap();
+    serde_json::from_value(metadata["packages"].take()).unwrap()
+}
+
+/// Asserts that all packages have a licence to be passed on and need no newer compiler than ours does.
+fn assert_free_and_old_enough(packages: &[serde_json::Value]) {
     let version = |text: &str| -> Vec<u32> { text.split('.').map(|part| part.parse().unwrap()).collect() };
     let ours = packages.iter().find(|package| package["name"] == "grainflow").unwrap();
     let oldest = version(ours["rust_version"].as_str().unwrap());
-    assert!(packages.len() > 50);
     for package in packages {
         let (name, licence) = (&package["name"], package["license"].as_str().unwrap_or_default());
         assert!(may_be_passed_on(licence), "{name} has the licence {licence:?}");
         let needs = package["rust_version"].as_str().map(version);
         assert!(needs.as_ref().is_none_or(|needs| *needs <= oldest), "{name} needs Rust {needs:?}");
     }
+}
+
+#[test]
+fn a_licence_may_be_chosen_where_there_is_a_choice() {
+    assert!(may_be_passed_on("(MIT OR GPL-3.0) AND Unicode-3.0") && may_be_passed_on("Unlicense/MIT"));
+    assert!(!may_be_passed_on("MIT AND GPL-3.0") && !may_be_passed_on("LGPL-2.1-or-later"));
+}
+
+/// Those of this platform, which a build has downloaded: cargo needs no network for them.
+#[test]
+fn dependencies_are_free_locked_and_old_enough() {
+    let about = cargo(&["--version", "--verbose"]);
+    let host = about.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    let packages = packages(&["--offline", "--filter-platform", host]);
+    assert!(packages.len() > 50);
+    assert_free_and_old_enough(&packages);
+}
+
+#[test]
+#[ignore = "needs the network for crates of other platforms: cargo test --release --test tidy -- --ignored"]
+fn dependencies_of_every_platform_are_free_locked_and_old_enough() {
+    let lock = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.lock")).unwrap();
+    let packages = packages(&[]);
+    assert_eq!(packages.len(), lock.lines().filter(|line| *line == "[[package]]").count());
+    assert_free_and_old_enough(&packages);
 }
 
 #[test]
@@ -309,6 +380,10 @@ fn the_rules_see_what_breaks_them() {
     assert_eq!(modules_used("use crate::engine::{A, B}; // crate").collect::<Vec<_>>(), ["engine"]);
     assert_eq!(word_in("let m: HashMap<u8, u8>;", &["HashMap"]), Some("HashMap"));
     assert_eq!(word_in("MyHashMapped", &["HashMap"]), None);
+    let script =
+        "cargo test --release --test a -- --ignored --nocapture long\ncargo test --test b -- --ignored";
+    assert!(runs_ignored(script, "--test a", "a_long_run") && runs_ignored(script, "--test b", "any"));
+    assert!(!runs_ignored(script, "--test a", "a_short_run") && !runs_ignored(script, "--lib", "any"));
     let code = file("src/space.rs", "a\n// b\nc // d\n\"http://e\"\n");
     assert_eq!(code.code().collect::<Vec<_>>(), [(1, "a"), (3, "c "), (4, "\"http://e\"")]);
     let text =

@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::run::{STOP, prepare};
 use super::{Exit, complain};
 use crate::campaign::calibrate::{CalibrationError, Request};
+use crate::number::with_error;
 use crate::report::calibration::Calibration;
 use crate::scenario::Overrides;
 use crate::statistics::Estimate;
@@ -28,7 +29,7 @@ pub(super) struct CalibrateArguments {
     replicas: u32,
 
     /// Seed of the first run, from 0 to 2^63 - 1; others count on from it
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::input::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
 
     /// Change one key, as in particles.count=500 or gravity[1]=-2; may be repeated
@@ -85,10 +86,7 @@ pub(super) fn calibrate(arguments: &CalibrateArguments) -> Exit {
 
 /// c and p at both ends of what was measured.
 fn closing_words(calibration: &Calibration) -> String {
-    let shown = |estimate: Estimate| match estimate.standard_error {
-        Some(error) => format!("{:.4} ± {error:.4}", estimate.value),
-        None => format!("{:.4}", estimate.value),
-    };
+    let shown = |estimate: Estimate| with_error(estimate.value, estimate.standard_error);
     let mut text = format!("{}: {} event-driven runs\n", calibration.scenario, calibration.replicas);
     if let (Some(first), Some(last)) = (calibration.stages.first(), calibration.stages.last()) {
         for stage in [first, last] {

@@ -45,7 +45,7 @@ pub(super) struct CompareArguments {
     jobs: Option<u16>,
 
     /// Seed from which every replica draws its own, from 0 to 2^63 - 1
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::input::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
 
     /// Change one key for all engines, as in particles.count=500; may be repeated
@@ -204,6 +204,13 @@ fn verdicts(comparison: &Comparison, judgement: &Judgement) -> String {
     }
     if judgement.unknown > 0 {
         text += &format!("  {} without errors to judge by\n", judgement.unknown);
+    }
+    for sentence in judgement.not_steady.iter().take(SENTENCES) {
+        text += &format!("  {sentence}\n");
+    }
+    let more = judgement.not_steady.len().saturating_sub(SENTENCES);
+    if more > 0 {
+        text += &format!("  and {more} more that are not steady\n");
     }
     text
 }

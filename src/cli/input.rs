@@ -18,12 +18,18 @@ pub(super) struct ScenarioInput {
     pub(super) engine: Option<String>,
 
     /// Seed of all random numbers, from 0 to 2^63 - 1
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 
     /// Change one key, as in particles.count=500 or gravity[1]=-2; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(super) sets: Vec<String>,
+}
+
+/// The seed that `text` is.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    let wrong = |_| format!("give a whole number from 0 to {} (2^63 - 1)", i64::MAX);
+    text.parse().map_err(wrong)
 }
 
 impl ScenarioInput {

@@ -17,6 +17,7 @@ mod calibrate;
 mod check;
 mod compare;
 mod export;
+mod hint;
 mod input;
 mod output;
 mod progress;
@@ -91,7 +92,11 @@ enum Command {
 
 /// Reads the command line and does what it says.
 pub fn main() -> ExitCode {
-    let exit = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refuse(&error),
+    };
+    let exit = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
@@ -104,6 +109,18 @@ pub fn main() -> ExitCode {
         Command::View(arguments) => view::view(&arguments),
     };
     ExitCode::from(output::ended(exit) as u8)
+}
+
+/// Prints what clap says, with a hint where the shell is the cause: a mistake, the help or the version.
+fn refuse(error: &clap::Error) -> ExitCode {
+    if error.use_stderr()
+        && let Some(hint) = hint::unquoted_list(std::env::args().skip(1))
+    {
+        eprintln!("error: {hint}");
+    }
+    // As clap itself has it: where nobody reads, there is nothing left to say.
+    let _ = error.print();
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::BadInput as u8))
 }
 
 /// Prints `text`, or as much of it as somebody reads: one who closes the pipe has seen enough.

@@ -4,6 +4,7 @@ use std::io::{IsTerminal, stderr};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::number::plain;
 use crate::run::Status;
 use crate::stopwatch::Stopwatch;
 
@@ -61,10 +62,10 @@ impl Progress {
         let speed = work.saturating_sub(last_work) as f64 / pause;
         (self.last, self.last_work) = (now, Some(work));
         let line = format!(
-            "{name}t = {}, {}, {:.2} collisions per particle, {:.1} M {things}/s",
-            readable(status.time),
+            "{name}t = {}, {}, {} collisions per particle, {:.1} M {things}/s",
+            plain(status.time, 6),
             if status.grains == 1 { "1 grain".to_owned() } else { format!("{} grains", status.grains) },
-            status.collisions_per_particle,
+            plain(status.collisions_per_particle, 4),
             speed * 1e-6
         );
         match &self.bar {
@@ -81,14 +82,5 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-    }
-}
-
-/// A number with four digits behind the point, or with an exponent where that would hide it.
-fn readable(number: f64) -> String {
-    if number == 0.0 || (1e-3..1e9).contains(&number.abs()) {
-        format!("{number:.4}")
-    } else {
-        format!("{number:.4e}")
     }
 }

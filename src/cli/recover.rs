@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Exit, complain};
+use crate::number::plain;
 use crate::record::error::LogError;
 use crate::record::log_at;
 use crate::record::recover::{Recovery, recover as recover_log};
@@ -64,9 +65,10 @@ fn words(recovery: &Recovery) -> String {
     }
     text + &match (recovery.whole_until, recovery.end) {
         (_, None) => "no recording is left\n".to_owned(),
-        (None, Some(end)) => format!("whole up to t = {end:.6}, its last recording\n"),
+        (None, Some(end)) => format!("whole up to t = {}, its last recording\n", plain(end, 6)),
         (Some(whole), Some(end)) => {
-            format!("whole up to t = {whole:.6}; recordings with holes up to t = {end:.6}\n")
+            let [whole, end] = [whole, end].map(|time| plain(time, 6));
+            format!("whole up to t = {whole}; recordings with holes up to t = {end}\n")
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::record::log_at;
 use crate::replay::compute::{Basis, ComputeError};
 use crate::replay::selection::Selection;
 
-/// Play a log back: its measures as a table, or pictures, a report, a film in the terminal
+/// Play a log back: its measures as comma-separated values, or pictures, a report, a film in the terminal
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct ReplayArguments {
@@ -48,9 +48,9 @@ pub(super) struct ReplayArguments {
     force: bool,
 }
 
-/// Measures as tables.
+/// Measures as tables of comma-separated values.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Tables")]
+#[command(next_help_heading = "Tables (comma-separated values)")]
 struct TableOptions {
     /// Only these measures; those that the run did not take are computed
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]

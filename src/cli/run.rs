@@ -5,17 +5,22 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::input::ScenarioInput;
 use super::progress::Progress;
 use super::{Exit, complain};
+use crate::comparison::unit_of;
 use crate::machine::Machine;
+use crate::number::{figure_with_unit, plain};
+use crate::observe::measure::Figure;
 use crate::run::folder::REPORT;
 use crate::run::resume::{ResumeError, Resumption};
+use crate::run::series::unit_name;
 use crate::run::{Outcome, RunError};
 use crate::scenario::check::check_on;
-use crate::scenario::model::AnyScenario;
+use crate::scenario::model::{AnyScenario, Units};
+use crate::simulation::figures::{figure_of, figures_of};
 use crate::stopwatch::Stopwatch;
 
 const RESUMING: &str =
@@ -121,9 +126,18 @@ fn resume(arguments: &RunArguments) -> Exit {
 fn opening_words(resumption: &Resumption) -> String {
     let log = resumption.log().display();
     let cut_off = resumption.cut_off().map(|sentence| format!("{sentence}\n")).unwrap_or_default();
+    let anew = match resumption.begun_anew() {
+        [] => String::new(),
+        names => format!(
+            "the log is of an earlier version, in which these measures remember other things: {}; they begin anew here, and \
+             their figures are those of what follows\n",
+            names.join(", ")
+        ),
+    };
     cut_off
+        + &anew
         + &match resumption.time() {
-            Some(time) => format!("goes on from the state at t = {time:.6} in {log}\n"),
+            Some(time) => format!("goes on from the state at t = {} in {log}\n", plain(time, 6)),
             None => format!("{log} holds no complete state: the run begins again from its scenario\n"),
         }
 }
@@ -188,6 +202,20 @@ fn usual_folder(scenario: &AnyScenario) -> PathBuf {
     PathBuf::from("out").join(format!("{name}-{}", engine.name()))
 }
 
+/// The figures of a summary, a line each: value, error and unit, or that it is not steady.
+fn figure_lines(summary: &Map<String, Value>, units: &Units) -> String {
+    let dimension = summary.get("dimension").and_then(Value::as_u64).unwrap_or(2) as usize;
+    let figures: Vec<Figure> = figures_of(summary).filter_map(|name| figure_of(summary, name)).collect();
+    let width = figures.iter().map(|figure| figure.name.len()).max().unwrap_or(0);
+    let line = |figure: &Figure| {
+        let unit = unit_name(unit_of(&figure.name, dimension), units);
+        let unit = if unit == "1" { "" } else { &unit };
+        let value = figure_with_unit(figure.value?, figure.standard_error, figure.trend, unit);
+        Some(format!("  {:<width$}  {value}\n", figure.name))
+    };
+    figures.iter().filter_map(line).collect()
+}
+
 /// What a user wants to know when a run has ended.
 fn closing_words(outcome: &Outcome) -> String {
     let mut text = String::new();
@@ -198,24 +226,19 @@ fn closing_words(outcome: &Outcome) -> String {
         false => format!("ended by its limit on {}", summary["end_reason"].as_str().unwrap_or("?")),
     };
     text += &format!(
-        "{} with {}: {ended} at t = {:.6}, {:.2} collisions per particle, {}, {:.1} s{}\n",
+        "{} with {}: {ended} at t = {}, {} collisions per particle, {}, {:.1} s{}\n",
         summary["scenario"].as_str().unwrap_or("?"),
         summary["engine"].as_str().unwrap_or("?"),
-        number("simulated_time").unwrap_or(0.0),
-        number("collisions_per_particle").unwrap_or(0.0),
+        plain(number("simulated_time").unwrap_or(0.0), 6),
+        plain(number("collisions_per_particle").unwrap_or(0.0), 4),
         match summary["events"].as_u64() {
             Some(events) => format!("{events} events"),
             None => format!("{} steps", summary["steps"]),
         },
         number("wall_seconds").unwrap_or(0.0),
-        number("resumed_at").map(|time| format!(" since t = {time:.6}")).unwrap_or_default(),
+        number("resumed_at").map(|time| format!(" since t = {}", plain(time, 6))).unwrap_or_default(),
     );
-    for (name, value) in summary.iter() {
-        let Some(error) = summary.get(&format!("{name}_standard_error")) else { continue };
-        let Some(value) = value.as_f64() else { continue };
-        let error = error.as_f64().map(|error| format!(" ± {error:.2e}")).unwrap_or_default();
-        text += &format!("  {name:<28} {value:.6}{error}\n");
-    }
+    text += &figure_lines(summary, &outcome.units);
     let total: f64 = outcome.laps.iter().map(|(_, seconds)| seconds).sum();
     let laps: Vec<String> = outcome
         .laps
@@ -232,4 +255,34 @@ fn closing_words(outcome: &Outcome) -> String {
     }
     text += &format!("wrote {}\n", outcome.folder.join(REPORT).display());
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_rounded_to_their_errors_and_have_units() {
+        let summary = serde_json::json!({
+            "dimension": 3,
+            "wall_shear_stress": 0.00130992, "wall_shear_stress_standard_error": 3.04e-5,
+            "wall_shear_stress_steady": true, "wall_shear_stress_trend": null,
+            "pressure": 264_960.0, "pressure_standard_error": 5.38e-11,
+            "mean_free_time": 5.561e-11, "mean_free_time_standard_error": 3.58e-13,
+            "heap_slope": 0.7546123, "heap_slope_standard_error": 0.003,
+            "heap_slope_steady": false, "heap_slope_trend": "rising",
+            "flow_velocity": 12.8, "flow_velocity_standard_error": 0.2,
+            "flow_velocity_steady": false, "flow_velocity_trend": "wandering",
+            "temperature": 3.0, "spectrum_slope": null, "spectrum_slope_standard_error": null,
+        });
+        let units = Units { length: "m".to_owned(), mass: "kg".to_owned(), time: "s".to_owned() };
+        let lines = figure_lines(summary.as_object().unwrap(), &units);
+        let expected = "  wall_shear_stress  0.001310 ± 0.000030 kg/(m·s^2)
+  pressure           264\u{202f}960 kg/(m·s^2)
+  mean_free_time     (5.561 ± 0.036) × 10⁻¹¹ s
+  heap_slope         not steady (rising, mean 0.755)
+  flow_velocity      not steady (wandering, mean 12.8 m/s)
+";
+        assert_eq!(lines, expected);
+    }
 }

@@ -3,7 +3,7 @@
 use clap::{Args, Subcommand};
 
 use super::{Exit, complain};
-use crate::scenario::builtin;
+use crate::scenario::{Overrides, builtin, load, trust};
 
 /// List the built-in scenarios, or print one as a file to start from
 #[derive(Args, Debug)]
@@ -21,11 +21,21 @@ enum ScenariosCommand {
     },
 }
 
+/// Where the engine of a built-in scenario is known to be wrong.
+fn known_faults(name: &str) -> Vec<String> {
+    let doubts = load(name, &Overrides::default()).map(|scenario| trust::doubts(&scenario));
+    let doubts = doubts.unwrap_or_default().into_iter().filter(|doubt| doubt.is_warning);
+    doubts.map(|doubt| doubt.brief).collect()
+}
+
 pub(super) fn scenarios(arguments: &ScenariosArguments) -> Exit {
     match &arguments.command {
         None => {
             for (name, about) in builtin::list() {
                 println!("{name:<14} {about}");
+                for fault in known_faults(name) {
+                    println!("{:<14}   known fault: {fault}", "");
+                }
             }
             println!("\n`grainflow run NAME` runs one, `grainflow scenarios show NAME` prints it.");
             Exit::Done

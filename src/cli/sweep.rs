@@ -10,7 +10,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::run::{STOP, prepare, threads_taken};
 use super::{Exit, complain};
 use crate::campaign::sweep::{Ended, Moment, Options, Outcome, Plan, SweepError, Wish, sweep as make};
-use crate::report::{FigureCurve, SweepFigure, SweepReport, with_error};
+use crate::number::with_error;
+use crate::report::{FigureCurve, SweepFigure, SweepReport};
 
 /// Figures that the last words show; the page has all.
 const SHOWN_FIGURES: usize = 4;
@@ -60,7 +61,7 @@ pub(super) struct SweepArguments {
     force: bool,
 
     /// Seed of all random numbers, from 0 to 2^63 - 1
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = super::input::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
 
     /// Change one key in every case, as in particles.count=500; may be repeated
@@ -162,6 +163,9 @@ impl Progress {
     }
 
     fn tell(&mut self, plan: &Plan, moment: &Moment<'_>) {
+        if let Some(why) = moment.remade.filter(|_| !self.quiet) {
+            self.say(&format!("{}: was finished and is run again: {why}", plan.case(moment.case)));
+        }
         // Steps may be many and short.
         if moment.ended.is_none() && moment.progress < self.shares[moment.case] + LEAST_PROGRESS {
             return;
@@ -215,7 +219,7 @@ fn closing_words(report: &SweepReport) -> String {
     let with_points = |figure: &&SweepFigure| figure.curves.iter().any(|curve| !curve.points.is_empty());
     let figures: Vec<&SweepFigure> = report.figures.iter().filter(with_points).collect();
     for figure in figures.iter().take(SHOWN_FIGURES) {
-        text += &format!("\n{}\n", figure.name);
+        text += &format!("\n{}\n", figure.labelled(&figure.name));
         for curve in &figure.curves {
             text += &curve_words(report, curve);
         }
@@ -235,8 +239,7 @@ fn curve_words(report: &SweepReport, curve: &FigureCurve) -> String {
         place.map_or("?", |place| abscissa.values[place].as_str())
     };
     for point in curve.points.iter().take(SHOWN_ROWS) {
-        let figure = with_error(point.value, point.standard_error);
-        text += &format!("  {} = {:<10} {figure}\n", abscissa.name, value(point.x));
+        text += &format!("  {} = {:<10} {}\n", abscissa.name, value(point.x), point.text());
     }
     if curve.points.len() > SHOWN_ROWS {
         text += &format!("  and {} more\n", curve.points.len() - SHOWN_ROWS);
@@ -244,9 +247,18 @@ fn curve_words(report: &SweepReport, curve: &FigureCurve) -> String {
     if let Some(law) = curve.power_law {
         let exponent = with_error(law.exponent, Some(law.standard_error));
         text += &format!(
-            "  power law: exponent {exponent}, all points within {:.1} %\n",
+            "  power law: exponent {exponent}, all {}points within {:.1} %\n",
+            if curve.not_steady() > 0 { "steady " } else { "" },
             100.0 * law.largest_deviation
         );
+    }
+    match curve.not_steady() {
+        0 => {}
+        1 => text += "  1 point is not steady: no fit takes it; a longer run may settle it\n",
+        many => {
+            text +=
+                &format!("  {many} points are not steady: no fit takes them; longer runs may settle them\n")
+        }
     }
     text
 }

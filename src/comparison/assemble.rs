@@ -4,8 +4,8 @@ use serde_json::{Map, Value};
 
 use super::extent::Remarks;
 use super::model::{Basis, Compared, Comparison, Contestant, Correlation, Cost};
-use super::words::{in_words, rounded};
-use super::{figures, profiles, series};
+use super::{figures, profiles, same_runs, series};
+use crate::number::{in_words, plain};
 use crate::record::contents::RunLog;
 use crate::scenario::kinds::Kinds;
 use crate::scenario::{Overrides, parse};
@@ -67,6 +67,7 @@ pub fn assemble(head: Head, entries: Vec<Entry>) -> Comparison {
         name(&mut comparison, &run.log);
     }
     comparison.remarks = remarks(&entries);
+    comparison.remarks.extend(same_runs::remarks(&entries));
     comparison.remarks.extend(head.remarks);
     if !entries.is_empty() {
         let mut left_out = Remarks::new();
@@ -125,7 +126,7 @@ fn memories(comparison: &Comparison, entries: &[Entry]) -> Vec<String> {
                 matches!(difference.basis, Basis::Blocks | Basis::Growth) && entry.runs.len() == 1;
             let Correlation { time, clock } = difference.correlation.as_ref().filter(|_| is_of_one)?;
             let over = if compared.abscissa.name == "time" { "" } else { " over collisions" };
-            Some(format!("{}{over} {} in {}", in_words(&compared.name), rounded(*time), in_words(clock)))
+            Some(format!("{}{over} {} in {}", in_words(&compared.name), plain(*time, 3), in_words(clock)))
         };
         let known: Vec<String> = comparison.series.iter().filter_map(of_series).collect();
         let reference = &entries[comparison.reference].label;

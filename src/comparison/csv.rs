@@ -3,10 +3,11 @@
 use std::fmt::Write;
 
 use super::model::{Compared, ComparedFigure, Comparison, Difference};
+use crate::statistics::Trend;
 
 /// The columns, in order.
 pub const HEADER: &str =
-    "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict";
+    "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict,steady";
 
 /// The file's text: a line per place and contestant of every series and profile, and one per contestant of a figure.
 ///
@@ -36,19 +37,19 @@ impl Table<'_> {
                 let values = [at(&curve.values), at(&curve.errors)];
                 let against = difference.map(|of| [at(&of.values), at(&of.errors)]).unwrap_or_default();
                 let head = [kind.to_owned(), name.clone(), number(compared.time), number(Some(*place))];
-                self.line(head, &self.label(contestant), values, against, difference);
+                self.line(head, &self.label(contestant), values, against, difference, None);
             }
             if let Some((difference, all)) = difference.and_then(|of| Some((of, of.overall?))) {
                 let head = [format!("{kind} as a whole"), name.clone(), number(compared.time), String::new()];
                 let against = [Some(all.value), Some(all.error)];
-                self.line(head, &self.label(contestant), [None; 2], against, Some(difference));
+                self.line(head, &self.label(contestant), [None; 2], against, Some(difference), None);
             }
         }
         for theory in &compared.theory {
             let label = format!("theory: {}", theory.name);
             for (place, value) in compared.places.iter().zip(&theory.values) {
                 let head = [kind.to_owned(), name.clone(), number(compared.time), number(Some(*place))];
-                self.line(head, &label, [Some(*value), None], [None; 2], None);
+                self.line(head, &label, [Some(*value), None], [None; 2], None, None);
             }
         }
     }
@@ -61,10 +62,11 @@ impl Table<'_> {
             let first = |values: &[f64]| values.first().copied();
             let against = difference.map(|of| [first(&of.values), first(&of.errors)]).unwrap_or_default();
             let values = [Some(estimate.value), estimate.standard_error];
-            self.line(head(), &self.label(contestant), values, against, difference);
+            let trend = figure.trends.get(contestant).copied().flatten();
+            self.line(head(), &self.label(contestant), values, against, difference, trend);
         }
         if let Some((value, _)) = &figure.theory {
-            self.line(head(), "theory", [Some(*value), None], [None; 2], None);
+            self.line(head(), "theory", [Some(*value), None], [None; 2], None, None);
         }
     }
 
@@ -79,14 +81,16 @@ impl Table<'_> {
         [value, error]: [Option<f64>; 2],
         [difference, difference_error]: [Option<f64>; 2],
         judged: Option<&Difference>,
+        trend: Option<Trend>,
     ) {
         let verdict = judged.map_or("", |difference| difference.verdict.name());
+        let steady = trend.map_or("", |trend| if trend.is_steady() { "true" } else { "false" });
         let [name, contestant] = [quoted(&name), quoted(contestant)];
         let [value, error, difference, difference_error] =
             [value, error, difference, difference_error].map(number);
         let _ = writeln!(
             self.text,
-            "{kind},{name},{time},{place},{contestant},{value},{error},{difference},{difference_error},{verdict}"
+            "{kind},{name},{time},{place},{contestant},{value},{error},{difference},{difference_error},{verdict},{steady}"
         );
     }
 }
@@ -125,21 +129,21 @@ mod tests {
     #[test]
     fn every_place_of_every_contestant_has_a_line() {
         let expected =
-            "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict
-series,temperature,,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs
-series,temperature,,0.5,\"hsmc, again\",0.1,,,,differs
-series as a whole,temperature,,,\"hsmc, again\",,,0.25,0.0625,differs
-series,temperature,,0.0,event-driven,1.0,0.0,,,
-series,temperature,,0.5,event-driven,,,,,
-series,temperature,,0.0,theory: Haff’s law,1.0,,,,
-series,temperature,,0.5,theory: Haff’s law,0.125,,,,
-profile,density-profile: volume_fraction,2.5,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs
-profile,density-profile: volume_fraction,2.5,0.5,\"hsmc, again\",0.1,,,,differs
-profile as a whole,density-profile: volume_fraction,2.5,,\"hsmc, again\",,,0.25,0.0625,differs
-profile,density-profile: volume_fraction,2.5,0.0,event-driven,1.0,0.0,,,
-profile,density-profile: volume_fraction,2.5,0.5,event-driven,,,,,
-figure,pressure,,,\"hsmc, again\",1.25,0.5,0.25,0.75,differs
-figure,pressure,,,theory,1.5,,,,
+            "kind,name,time,place,contestant,value,standard_error,difference,difference_error,verdict,steady
+series,temperature,,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs,
+series,temperature,,0.5,\"hsmc, again\",0.1,,,,differs,
+series as a whole,temperature,,,\"hsmc, again\",,,0.25,0.0625,differs,
+series,temperature,,0.0,event-driven,1.0,0.0,,,,
+series,temperature,,0.5,event-driven,,,,,,
+series,temperature,,0.0,theory: Haff’s law,1.0,,,,,
+series,temperature,,0.5,theory: Haff’s law,0.125,,,,,
+profile,density-profile: volume_fraction,2.5,0.0,\"hsmc, again\",1.0,0.0,0.0,0.0,differs,
+profile,density-profile: volume_fraction,2.5,0.5,\"hsmc, again\",0.1,,,,differs,
+profile as a whole,density-profile: volume_fraction,2.5,,\"hsmc, again\",,,0.25,0.0625,differs,
+profile,density-profile: volume_fraction,2.5,0.0,event-driven,1.0,0.0,,,,
+profile,density-profile: volume_fraction,2.5,0.5,event-driven,,,,,,
+figure,pressure,,,\"hsmc, again\",1.25,0.5,0.25,0.75,differs,false
+figure,pressure,,,theory,1.5,,,,,
 ";
         assert_eq!(text(&made_up()), expected);
     }

@@ -2,7 +2,7 @@
 
 use super::assemble::{Entry, Replica};
 use super::errors::Drawn;
-use super::words::rounded;
+use crate::number::plain;
 use crate::statistics::mean;
 
 /// A run that is shorter than this share of the middle one of its contestant would cut off the others.
@@ -43,7 +43,7 @@ pub(super) fn without_short<T>(
                 remarks,
                 format!(
                     "{name} ends at {what} {}, long before the others of {}, and is left out of what runs along {what}.",
-                    rounded(end),
+                    plain(end, 3),
                     entry.label
                 ),
             );
@@ -68,10 +68,10 @@ pub(super) fn say_where_it_ends(what: &str, [first, end]: [f64; 2], whole: [f64;
             remarks,
             format!(
                 "Along {what}, curves are compared from {} to {}, what at least two engines have of {} to {}.",
-                rounded(first),
-                rounded(end),
-                rounded(whole[0]),
-                rounded(whole[1])
+                plain(first, 3),
+                plain(end, 3),
+                plain(whole[0], 3),
+                plain(whole[1], 3)
             ),
         );
     }

@@ -5,7 +5,9 @@ use serde_json::{Map, Value, json};
 use super::model::{
     Basis, Compared, ComparedFigure, Comparison, Contestant, Difference, TheoryCurve, Verdict,
 };
+use crate::number::NOT_STEADY;
 use crate::observe::measure::{Column, Dimension};
+use crate::statistics::{Estimate, Trend};
 
 /// The file's text: the names of [`Comparison`], all but the frames; null where a number is not known.
 pub fn text(comparison: &Comparison) -> String {
@@ -37,6 +39,7 @@ impl Verdict {
             Verdict::Agrees => "agrees",
             Verdict::Differs => "differs",
             Verdict::Unknown => "unknown",
+            Verdict::NotSteady => NOT_STEADY,
         }
     }
 }
@@ -94,14 +97,17 @@ fn compared(compared: &Compared) -> Value {
 }
 
 fn figure(figure: &ComparedFigure) -> Value {
-    let values: Vec<Value> = figure
-        .values
-        .iter()
-        .map(|estimate| {
-            estimate
-                .map_or(Value::Null, |of| json!({ "value": of.value, "standard_error": of.standard_error }))
+    let value = |(estimate, trend): (&Option<Estimate>, &Option<Trend>)| {
+        estimate.map_or(Value::Null, |of| {
+            json!({
+                "value": of.value,
+                "standard_error": of.standard_error,
+                "steady": trend.map(Trend::is_steady),
+                "trend": trend.filter(|trend| !trend.is_steady()).map(Trend::name),
+            })
         })
-        .collect();
+    };
+    let values: Vec<Value> = figure.values.iter().zip(&figure.trends).map(value).collect();
     json!({
         "name": figure.name,
         "unit": unit(figure.unit),
@@ -188,7 +194,10 @@ mod tests {
         assert_eq!(series["theory"][0]["values"], json!([1.0, 0.125]));
         assert_eq!(read["profiles"][0]["time"], 2.5);
         let figure = &read["figures"][0];
-        assert_eq!(figure["values"], json!([{ "value": 1.25, "standard_error": 0.5 }, null]));
+        assert_eq!(
+            figure["values"],
+            json!([{ "value": 1.25, "standard_error": 0.5, "steady": false, "trend": "rising" }, null])
+        );
         assert_eq!(figure["theory"], json!({ "value": 1.5, "source": "Enskog" }));
     }
 }

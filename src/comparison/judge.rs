@@ -5,8 +5,8 @@
 
 use super::errors::{Along, Raw, Terms, Whole};
 use super::model::{Difference, Overall, Peak, Verdict};
-use super::student::{THREE_SIGMA, threshold};
 use super::words::{Shown, Subject, overall_sentence, sentence, unknown_sentence};
+use crate::statistics::student::{THREE_SIGMA, threshold};
 
 /// The verdict on `raw`, with its words.
 pub(super) fn judged(raw: Raw, along: &Along<'_>, terms: Terms, subject: &Subject<'_>) -> Difference {

@@ -16,10 +16,10 @@ mod memory;
 pub mod model;
 mod profiles;
 mod read;
+mod same_runs;
 mod scatter;
 mod series;
 mod stability;
-mod student;
 #[cfg(test)]
 mod testing;
 pub mod theory;

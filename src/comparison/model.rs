@@ -3,7 +3,7 @@
 use crate::observe::measure::{Column, Dimension};
 use crate::record::contents::{Frame, Walls};
 use crate::scenario::kinds::Kinds;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, Trend};
 
 /// Several engines side by side, each with the same initial states.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -209,6 +209,8 @@ pub enum Verdict {
     Differs,
     /// There are no errors to judge by.
     Unknown,
+    /// A figure is not steady in one of the two, so that its mean and error say nothing.
+    NotSteady,
 }
 
 /// A figure of the summary.
@@ -220,6 +222,8 @@ pub struct ComparedFigure {
     pub unit: Dimension,
     /// `[contestant]`.
     pub values: Vec<Option<Estimate>>,
+    /// `[contestant]`: whether its series is steady in the runs; `None` where no run says so.
+    pub trends: Vec<Option<Trend>>,
     /// `[contestant]` against the reference, each with one value.
     pub differences: Vec<Option<Difference>>,
     /// What theory says, where it says something, with its source.

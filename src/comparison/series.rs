@@ -6,7 +6,8 @@ use super::errors::{Along, Drawn, Terms, curve};
 use super::extent::{Remarks, level, say_where_it_ends, without_short};
 use super::interpolate::{Path, Sampled};
 use super::model::Compared;
-use super::words::{Subject, in_words};
+use super::words::Subject;
+use crate::number::in_words;
 use crate::observe::measure::{Column, Dimension};
 use crate::record::contents::RunLog;
 

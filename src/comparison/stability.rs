@@ -1,7 +1,7 @@
 //! Whether a cooling gas stays homogeneous, and whether hard grains may collapse: remarks from kinetic theory.
 
-use super::words::rounded;
 use crate::law::kinetic_theory::{cluster_threshold, collapse_restitution, optical_depth, shear_threshold};
+use crate::number::plain;
 use crate::scenario::model::Scenario;
 use crate::space::Vector;
 
@@ -53,19 +53,19 @@ impl Place {
         let bound = threshold(optical_depth(self.volume_fraction, self.side, 1.0));
         // Thresholds fall with the square of the length.
         let length = self.side * (bound / self.dissipation).sqrt();
-        let (side, length) = (rounded(self.side), rounded(length));
+        let (side, length) = (plain(self.side, 3), plain(length, 3));
         let (relation, outcome) = if self.dissipation > bound {
-            ("longer", format!("{then}, as 1 − r² = {} exceeds", rounded(self.dissipation)))
+            ("longer", format!("{then}, as 1 − r² = {} exceeds", plain(self.dissipation, 3)))
         } else {
             (
                 "not longer",
-                format!("none are expected, as 1 − r² = {} does not exceed", rounded(self.dissipation)),
+                format!("none are expected, as 1 − r² = {} does not exceed", plain(self.dissipation, 3)),
             )
         };
         format!(
             "Theory, {name}: the box of {side} d is {relation} than {length} d, above which they grow; {outcome} {symbol} = {} \
              of this box (Miller 2004, {equation}, a dilute gas).",
-            rounded(bound)
+            plain(bound, 3)
         )
     }
 }
@@ -81,7 +81,7 @@ fn collapse<V: Vector>(scenario: &Scenario<V>, restitution: f64) -> String {
     };
     format!(
         "Theory, inelastic collapse: r = {restitution} is {relation} r_ic = {}: {outcome} (Miller 2004, 4.8).",
-        rounded(bound)
+        plain(bound, 3)
     )
 }
 

@@ -6,7 +6,7 @@ use super::model::{
 };
 use crate::observe::units::{ENERGY, PURE, column};
 use crate::record::contents::Frame;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, Trend};
 
 /// HSMC beside event-driven dynamics: one series of two places, one profile, one figure.
 pub(super) fn made_up() -> Comparison {
@@ -33,6 +33,7 @@ pub(super) fn made_up() -> Comparison {
             name: "pressure".to_owned(),
             unit: ENERGY,
             values: vec![Some(Estimate { value: 1.25, standard_error: Some(0.5) }), None],
+            trends: vec![Some(Trend::Rising), None],
             differences: vec![Some(difference(vec![0.25], vec![0.75])), None],
             theory: Some((1.5, "Enskog".to_owned())),
         }],

@@ -3,9 +3,9 @@
 use super::laws::{Contacts, Laws};
 use super::model::{Compared, ComparedFigure, Comparison, TheoryCurve};
 use super::stability::remarks;
-use super::words::rounded;
 use crate::law::homogeneous_cooling::HomogeneousCooling;
 use crate::law::kinetic_theory::{chaotic_impact_density, maxwell_density};
+use crate::number::plain;
 use crate::scenario::model::{AnyScenario, InitialVelocities, Scenario};
 use crate::scenario::{Overrides, parse};
 use crate::space::Vector;
@@ -48,7 +48,7 @@ impl<'a, V: Vector> Theory<'a, V> {
         let mut exception = match laws.contacts() {
             Contacts::OfPoints => "; g = 1, a gas of points".to_owned(),
             _ if of_points => {
-                let factor = rounded(V::contact_correlation(scenario.volume_fraction()));
+                let factor = plain(V::contact_correlation(scenario.volume_fraction()), 3);
                 format!(
                     "; dsmc, of points, has g = 1: {factor} times fewer collisions per time at one temperature"
                 )
@@ -131,7 +131,9 @@ impl<'a, V: Vector> Theory<'a, V> {
         let energies = 0.5 * V::DIMENSION as f64 * f64::from(self.scenario.count);
         let name = if is_in_time { "Haff’s law" } else { "homogeneous cooling" };
         match column {
-            "temperature" => curve(name, self.cooling_source(&law, is_in_time), &temperature),
+            "temperature" | "granular_temperature" => {
+                curve(name, self.cooling_source(&law, is_in_time), &temperature)
+            }
             "kinetic_energy" => {
                 curve(name, self.cooling_source(&law, is_in_time), &|place| energies * temperature(place))
             }
@@ -152,7 +154,7 @@ impl<'a, V: Vector> Theory<'a, V> {
             format!(
                 "T₀ (1 + t/t₀)⁻² with t₀ = {} (Haff 1983; Enskog frequency; Sonine correction of van Noije and Ernst \
                  1998), while the gas is homogeneous{}",
-                rounded(law.time),
+                plain(law.time, 3),
                 self.exception
             )
         } else {
@@ -160,7 +162,7 @@ impl<'a, V: Vector> Theory<'a, V> {
             format!(
                 "T₀ exp(−γτ) with γ = {} per collision (van Noije and Ernst 1998), while the gas is homogeneous; the \
                  same for every engine",
-                rounded(law.per_collision)
+                plain(law.per_collision, 3)
             )
         }
     }
@@ -235,7 +237,7 @@ impl<'a, V: Vector> Theory<'a, V> {
         let unit = scenario.grain.mass * rate * rate * scenario.grain.diameter.powi(2 - V::DIMENSION as i32);
         let source = format!(
             "Bagnold’s law, {} m (v/H)² d^(2−D), of Navier–Stokes–Enskog theory: uniform shear without slip",
-            rounded(coefficient)
+            plain(coefficient, 3)
         );
         Some((coefficient * unit, source))
     }

@@ -38,7 +38,8 @@ fn over(name: &str, abscissa: &str, ordinate: &str, places: &[f64]) -> Compared 
 
 fn figure(name: &str) -> ComparedFigure {
     let values = vec![Some(Estimate { value: 1.0, standard_error: None })];
-    ComparedFigure { name: name.to_owned(), unit: PURE, values, differences: vec![None], theory: None }
+    let name = name.to_owned();
+    ComparedFigure { name, unit: PURE, values, trends: vec![None], differences: vec![None], theory: None }
 }
 
 fn of_series(mut compared: Comparison, abscissa: &str, ordinate: &str) -> Option<TheoryCurve> {

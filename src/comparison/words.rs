@@ -2,6 +2,7 @@
 
 use super::errors::Missing;
 use super::model::{Difference, Overall, Peak};
+use crate::number::{plain, with_error};
 
 /// What a sentence is about.
 #[derive(Clone, Debug)]
@@ -20,38 +21,6 @@ pub(super) struct Subject<'a> {
     pub(super) is_cooling: bool,
 }
 
-/// A name of a column or measure without the signs between its words.
-pub(super) fn in_words(name: &str) -> String {
-    name.replace(['_', '-'], " ")
-}
-
-/// Three significant digits.
-pub(super) fn rounded(value: f64) -> String {
-    let text = format!("{value:.2e}");
-    text.parse::<f64>().map_or(text, |short| short.to_string())
-}
-
-/// `value` with `digits` significant digits, without a tail of zeros.
-fn short(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let decimals = digits as i32 - 1 - value.abs().log10().floor() as i32;
-    match decimals {
-        ..-4 | 9.. => format!("{value:.*e}", digits - 1),
-        _ => format!("{value:.*}", decimals.max(0) as usize),
-    }
-}
-
-/// `value ± error`, to two digits of the error.
-fn with_error(value: f64, error: f64) -> String {
-    if !(error > 0.0 && error.is_finite()) || value.abs() < error {
-        return format!("{} ± {}", short(value, 2), short(error, 2));
-    }
-    let more = (value.abs().log10().floor() - error.log10().floor()) as usize;
-    format!("{} ± {}", short(value, more.min(13) + 2), short(error, 2))
-}
-
 /// Where a difference that counts is shown, and what it is beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shown {
@@ -64,14 +33,14 @@ pub(super) struct Shown {
 impl Subject<'_> {
     /// The quantity, with the time of a profile.
     fn what(&self) -> String {
-        let when = self.time.map_or_else(String::new, |time| format!(" at time {}", short(time, 3)));
+        let when = self.time.map_or_else(String::new, |time| format!(" at time {}", plain(time, 3)));
         format!("{}{when}", self.quantity)
     }
 
     fn at(&self, x: f64) -> String {
         match self.abscissa.is_empty() {
             true => String::new(),
-            false => format!(" at {} {}", self.abscissa, short(x, 3)),
+            false => format!(" at {} {}", self.abscissa, plain(x, 3)),
         }
     }
 
@@ -79,8 +48,8 @@ impl Subject<'_> {
     fn claim(&self, value: f64, error: f64, is_relative: bool) -> String {
         let Subject { label, reference, .. } = self;
         let amount = match is_relative {
-            true => format!("{} %", with_error(100.0 * value.abs(), 100.0 * error)),
-            false => with_error(value.abs(), error),
+            true => format!("{} %", with_error(100.0 * value.abs(), Some(100.0 * error))),
+            false => with_error(value.abs(), Some(error)),
         };
         let (side, cools) = if value < 0.0 { ("below", "faster") } else { ("above", "more slowly") };
         match self.is_cooling {
@@ -112,6 +81,12 @@ pub(super) fn unknown_sentence(missing: Missing, subject: &Subject<'_>) -> Strin
     )
 }
 
+/// What is said of a figure that `shown` says is not steady in the runs of `label`.
+pub(super) fn not_steady_sentence(subject: &Subject<'_>, label: &str, shown: &str) -> String {
+    let Subject { label: own, reference, .. } = subject;
+    format!("{own}: {} of {label} is {shown}, so it is not compared with {reference}", subject.what())
+}
+
 /// What `difference` says at `places`, with its `ratios` to its errors; where it counts, at the place that is `shown`.
 pub(super) fn sentence(
     difference: &Difference,
@@ -128,21 +103,21 @@ pub(super) fn sentence(
             false => format!(
                 "{label}: {} agrees with {reference}, at most {} standard errors apart{} (differs beyond {})",
                 subject.what(),
-                short(most.standard_errors, 2),
+                plain(most.standard_errors, 2),
                 subject.at(most.place),
-                short(difference.threshold, 2)
+                plain(difference.threshold, 2)
             ),
         };
     };
     let claim = subject.claim(difference.values[place], difference.errors[place], difference.is_relative);
     let apart = match ratios[place].is_finite() {
-        true => format!("{} standard errors, beyond {}", short(ratios[place], 2), short(limit, 2)),
+        true => format!("{} standard errors, beyond {}", plain(ratios[place], 2), plain(limit, 2)),
         false => "the same in all replicas".to_owned(),
     };
     let stays = difference
         .parts_at
         .filter(|_| places.len() > 1)
-        .map_or_else(String::new, |x| format!("; apart from {} {} on", subject.abscissa, short(x, 3)));
+        .map_or_else(String::new, |x| format!("; apart from {} {} on", subject.abscissa, plain(x, 3)));
     format!("{claim}{} ({apart}){stays}", subject.at(places[place]))
 }
 
@@ -151,22 +126,8 @@ pub(super) fn overall_sentence(all: Overall, is_relative: bool, subject: &Subjec
     format!(
         "{} in the mean of the whole curve ({} standard errors, beyond {}; the error is too wide at any single {})",
         subject.claim(all.value, all.error, is_relative),
-        short(all.standard_errors, 2),
-        short(all.threshold, 2),
+        plain(all.standard_errors, 2),
+        plain(all.threshold, 2),
         subject.abscissa
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_keep_two_digits_of_their_error() {
-        assert_eq!(with_error(2.71559, 0.0412), "2.716 ± 0.041");
-        assert_eq!(with_error(1234.5, 12.0), "1234 ± 12");
-        assert_eq!(with_error(0.001, 0.03), "0.0010 ± 0.030");
-        assert_eq!(short(0.0, 3), "0");
-        assert_eq!(short(1.5e-12, 2), "1.5e-12");
-    }
 }

@@ -8,6 +8,7 @@ pub mod stochastic;
 use crate::matter::gas::Gas;
 use crate::space::Vector;
 use cell_counts::CellCount;
+use event_driven::rules::Cure;
 use report::StepReport;
 
 /// Something that advances a gas.
@@ -161,7 +162,7 @@ pub enum EngineError {
     /// Grains collide without end in no time.
     #[error(
         "inelastic collapse at t = {time}: grain {id} has collided {collisions} times within {span:e} time units \
-         (seed {seed}); set a cure in [engine.event_driven], such as collapse = {{ {cure} = {value:.1e} }}"
+         (seed {seed}); set a cure in [engine.event_driven], such as collapse = {remedy}"
     )]
     Collapse {
         /// Identity of a grain that takes part.
@@ -174,10 +175,8 @@ pub enum EngineError {
         seed: u64,
         /// When [time].
         time: f64,
-        /// The key of a cure.
-        cure: &'static str,
-        /// A value that would do [time, or length/time].
-        value: f64,
+        /// A cure that goes further than the one there was.
+        remedy: Cure,
     },
     /// Nothing moves and nothing will.
     #[error(

@@ -2,12 +2,15 @@
 
 use super::moment::Moment;
 use super::volume::Volume;
+use crate::record::contents::within_rounding;
 
 /// A grid of equal cells, numbered with the first axis fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldGrid {
     /// Lower corner [length].
     pub origin: [f64; 3],
+    /// Upper corner [length].
+    pub end: [f64; 3],
     /// Sides of a cell [length]; along an axis that does not exist, the depth of the box.
     pub spacing: [f64; 3],
     /// Cells along each axis; 1 beyond D.
@@ -61,6 +64,7 @@ impl FieldGrid {
     pub fn of_cells(volume: &Volume, cells: [usize; 3]) -> Self {
         FieldGrid {
             origin: volume.lower,
+            end: volume.upper,
             spacing: std::array::from_fn(|axis| volume.length(axis) / cells[axis] as f64),
             cells,
             dimension: volume.dimension,
@@ -82,16 +86,22 @@ impl FieldGrid {
         self.spacing[..self.dimension].iter().product()
     }
 
-    /// The cell that holds `position`; `None` outside of the box. A position on its upper side belongs to the last cell.
-    fn cell_of(&self, position: [f64; 3]) -> Option<usize> {
+    /// The cell that holds `position`; `None` outside of the box. A position on its upper side belongs to the last cell, and
+    /// so does one that `is_single` and beyond that side by no more than its rounding.
+    fn cell_of(&self, position: [f64; 3], is_single: bool) -> Option<usize> {
         let mut cell = 0;
         for axis in (0..self.dimension).rev() {
-            let place = (position[axis] - self.origin[axis]) / self.spacing[axis];
-            let most = self.cells[axis] as f64;
-            if !(0.0..=most).contains(&place) {
+            let (lower, upper) = (self.origin[axis], self.end[axis]);
+            let place = match is_single {
+                true => within_rounding(position[axis], lower, upper),
+                false => position[axis],
+            };
+            // Not the number of the cell: the division rounds, too.
+            if !(lower..=upper).contains(&place) {
                 return None;
             }
-            cell = cell * self.cells[axis] + (place as usize).min(self.cells[axis] - 1);
+            let along = ((place - lower) / self.spacing[axis]) as usize;
+            cell = cell * self.cells[axis] + along.min(self.cells[axis] - 1);
         }
         Some(cell)
     }
@@ -115,7 +125,7 @@ struct Sums {
 pub fn fields_of(moment: &Moment, grid: FieldGrid) -> Fields {
     let mut cells = vec![Sums::default(); grid.len()];
     let places: Vec<Option<usize>> =
-        moment.positions.iter().map(|&position| grid.cell_of(position)).collect();
+        moment.positions.iter().map(|&position| grid.cell_of(position, moment.is_single)).collect();
     let within = || places.iter().enumerate().filter_map(|(row, place)| Some((row, (*place)?)));
     for (row, cell) in within() {
         let (sums, mass) = (&mut cells[cell], moment.masses[row]);
@@ -197,6 +207,23 @@ mod tests {
         let fields = fields_of(&Moment { grains: 30, ..moment() }, grid());
         assert_eq!(fields.fields[0].values, [5.0, 2.5]);
         assert_eq!(fields.remark.as_deref(), Some("thinned: 3 of 30 grains"));
+    }
+
+    #[test]
+    fn a_place_that_rounding_put_outside_belongs_to_the_last_cell() {
+        // 0.6 as f32 is 0.60000002; the sides of 7 cells of a box of 0.6 do not add up to it either.
+        let volume =
+            Volume { lower: [-0.1, 0.0, -0.5], upper: [4.0, 0.6, 0.5], periodic: [false; 3], dimension: 2 };
+        let grid = FieldGrid::of_cells(&volume, [1, 7, 1]);
+        let rounded = |x: f64, y: f64| [f64::from(x as f32), f64::from(y as f32), 0.0];
+        let rounded_out = rounded(-0.1, 0.6);
+        assert!(rounded_out[0] < -0.1 && rounded_out[1] > 0.6);
+        assert_eq!(grid.cell_of(rounded_out, true), Some(6));
+        assert_eq!(grid.cell_of(rounded_out, false), None);
+        assert_eq!(grid.cell_of([4.0, 0.6, 0.0], false), Some(6));
+        // One step of single precision farther out is outside.
+        let next = f64::from((0.6_f32).next_up());
+        assert_eq!(grid.cell_of([1.0, next, 0.0], true), None);
     }
 
     #[test]

@@ -18,9 +18,9 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// The box of `scenario`.
+    /// The box of the run of `scenario`, with the strokes of its vibrating walls: that of its cells.
     pub(crate) fn of<V: Vector>(scenario: &Scenario<V>) -> Self {
-        let Walls { mut lower, mut upper, sides } = Walls::new(&scenario.boundary, V::ZERO, scenario.size);
+        let Walls { mut lower, mut upper, sides } = scenario.walls();
         for axis in V::DIMENSION..3 {
             lower[axis] = -0.5 * scenario.largest_diameter();
             upper[axis] = 0.5 * scenario.largest_diameter();

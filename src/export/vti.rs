@@ -7,7 +7,7 @@ use super::vtk;
 
 /// Writes one set of fields as data of cells. A plane is an image without depth at z = 0.
 pub(super) fn write(to: &mut dyn Write, fields: &Fields) -> io::Result<()> {
-    let FieldGrid { mut origin, spacing, cells, dimension } = fields.grid;
+    let FieldGrid { mut origin, spacing, cells, dimension, .. } = fields.grid;
     let mut extent = cells;
     for axis in dimension..3 {
         (origin[axis], extent[axis]) = (0.0, 0);

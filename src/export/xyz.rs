@@ -26,13 +26,31 @@ pub(super) fn write(to: &mut dyn Write, moment: &Moment, volume: &Volume) -> io:
         None => writeln!(to, " grains={}", moment.grains)?,
     }
     for row in 0..moment.len() {
-        let lead = format!("{} {}", name(moment.species[row]), moment.ids[row]);
+        let lead = format!("{} {}", symbol(moment.species[row]), moment.ids[row]);
         moment.write_row(to, row, &lead, " ")?;
     }
     Ok(())
 }
 
-/// A species as a word: programs take it for a chemical symbol, and none is called so.
-fn name(species: u8) -> String {
-    format!("G{}", u32::from(species) + 1)
+/// The chemical elements in the order of their atomic numbers, from 1 on.
+const ELEMENTS: &str = "H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se Br Kr \
+    Rb Sr Y Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu Hf Ta W Re Os \
+    Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U Np Pu Am Cm Bk Cf Es Fm Md No Lr Rf Db Sg Bh Hs Mt Ds Rg Cn Nh Fl Mc \
+    Lv Ts Og";
+
+/// The word for a species: ASE takes no other words than chemical symbols, so that species n is the element of atomic
+/// number n, and `X`, the symbol for none, beyond the last element.
+fn symbol(species: u8) -> &'static str {
+    ELEMENTS.split_whitespace().nth(species.into()).unwrap_or("X")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn species_are_elements_by_their_numbers() {
+        assert_eq!(ELEMENTS.split_whitespace().count(), 118);
+        assert_eq!([0, 1, 91, 117, 118, 254].map(symbol), ["H", "He", "U", "Og", "X", "X"]);
+    }
 }

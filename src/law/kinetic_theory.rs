@@ -92,6 +92,21 @@ pub fn bagnold_coefficient<V: Vector>(volume_fraction: f64, restitution: f64) ->
     shear_viscosity::<V>(volume_fraction).powf(1.5) / loss.sqrt()
 }
 
+/// By which factor partners from anywhere in a cell of side L raise the shear viscosity; `side` is L/d.
+///
+/// Each collision carries momentum over the distance of its partners, of which ⟨Δy²⟩ = L²/6 in a cell that is cubic. With
+/// ⟨(Δv_x)²⟩ = ((1 + r)/2)² 4T/(D m) this adds Δη = n m f_E L²/(6D) ((1 + r)/2)² to Enskog's viscosity; for a dilute elastic gas
+/// of spheres that is 16/(45π) (L/λ)² of it (Alexander, Garcia and Alder, Phys. Fluids 10, 1540, 1998).
+pub fn cell_viscosity_factor<V: Vector>(volume_fraction: f64, restitution: f64, side: f64) -> f64 {
+    let unit = Grain { diameter: 1.0, mass: 1.0 };
+    let correlation = V::contact_correlation(volume_fraction);
+    let frequency = collision_frequency::<V>(unit, volume_fraction, 1.0, correlation);
+    let density = volume_fraction / V::UNIT_SPHERE_VOLUME;
+    let share = (0.5 * (1.0 + restitution)).powi(2);
+    let added = density * frequency * side * side / (6.0 * V::DIMENSION as f64) * share;
+    1.0 + added / shear_viscosity::<V>(volume_fraction)
+}
+
 /// Optical depth l = ν L/d of a box of side L (Miller 2004, 4.9).
 pub fn optical_depth(volume_fraction: f64, side: f64, diameter: f64) -> f64 {
     volume_fraction * side / diameter
@@ -186,6 +201,20 @@ mod tests {
             / (16.0 * PI.sqrt());
         assert!((shear_viscosity::<DVec2>(nu) / flat - 1.0).abs() < 1e-14);
         assert!((shear_viscosity::<DVec3>(nu) / deep - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn cells_raise_the_viscosity_of_a_dilute_gas_as_printed() {
+        let nu = 1e-9;
+        for paths in [0.5, 1.0, 3.0] {
+            let side = paths * mean_free_path::<DVec3>(Grain { diameter: 1.0, mass: 1.0 }, nu);
+            let printed = 1.0 + 16.0 / (45.0 * PI) * paths * paths;
+            let found = cell_viscosity_factor::<DVec3>(nu, 1.0, side);
+            assert!((found / printed - 1.0).abs() < 1e-7, "{found} beside {printed}");
+        }
+        // Each collision of r = 0 exchanges half as much as an elastic one.
+        let added = |r: f64| cell_viscosity_factor::<DVec2>(0.1, r, 2.5) - 1.0;
+        assert!((added(0.0) / added(1.0) - 0.25).abs() < 1e-12);
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod boundary;
 pub mod homogeneous_cooling;
 pub mod impact;
 pub mod kinetic_theory;
+pub mod mixture;
 pub mod pair_collision;
 pub mod piecewise;
 pub mod restitution;

@@ -1,13 +1,13 @@
 //! `collisions`: how often grains collide, and how far they get in between.
 
+use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
-use super::moments::mean_speed;
 use super::samples::{Samples, figure, steady_rate, steady_ratio};
 use super::units::{RATE, column};
 use crate::space::Vector;
 
 /// Collisions per particle and time 2ΔC/(N Δt), the mean free time N Δt/(2ΔC), and the mean free path: the mean
-/// speed |v − v̄| about the centre of mass, summed over time, per collision of a grain.
+/// speed |v − u| about the local flow u ([`local_flow`](super::local_flow)), summed over time, per collision of a grain.
 ///
 /// Between two looks at the gas the mean speed is taken as the mean of both.
 #[derive(Clone, Debug)]
@@ -31,9 +31,13 @@ impl Collisions {
     }
 }
 
+/// First in a memory whose speeds are about the local flow: older ones begin with 0 or 1.
+const ABOUT_LOCAL_FLOW: f64 = -2.0;
+
 /// Collisions per particle, mean speed [length/time].
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> [f64; 2] {
-    [snapshot.totals.collisions_per_particle, mean_speed(snapshot.gas)]
+    let flow = LocalFlow::of(snapshot.gas, grains_of_a_bin::<V>());
+    [snapshot.totals.collisions_per_particle, flow.mean_speed(snapshot.gas)]
 }
 
 /// Time, collisions per particle, and the path that a grain has gone since the first row, `[row]`.
@@ -87,10 +91,13 @@ impl<V: Vector> Measure<V> for Collisions {
     }
 
     fn memory(&self) -> Vec<f64> {
-        self.samples.memory_behind(self.previous)
+        let mut memory = vec![ABOUT_LOCAL_FLOW];
+        memory.extend(self.samples.memory_behind(self.previous));
+        memory
     }
 
     fn recall(&mut self, memory: &[f64]) -> bool {
+        let [ABOUT_LOCAL_FLOW, memory @ ..] = memory else { return false };
         self.samples.recall_behind(&mut self.previous, memory)
     }
 }
@@ -102,7 +109,8 @@ mod tests {
     use crate::observe::testing::{State, assert_resumes, figure_of, setting_of, show};
     use glam::{DVec2, DVec3};
 
-    /// Two grains at speed 2 beside a flow, which collide `rate` times per time each.
+    /// Two grains at speed 2 beside their mean, which collide `rate` times per time each. As two of many, whose mean they would
+    /// not move, they have √2 times that speed.
     fn colliding(rate: f64) -> Vec<State<DVec2>> {
         let bed = setting_of(DVec2::splat(4.0), [2, 2, 1]);
         let flow = DVec2::new(9.0, 9.0);
@@ -121,7 +129,8 @@ mod tests {
         let figure = |name| figure_of(&mut Collisions::new(), &states, 20.0, name);
         assert_eq!(figure("collision_frequency"), (Some(4.0), Some(0.0)));
         assert_eq!(figure("mean_free_time"), (Some(0.25), Some(0.0)));
-        assert_eq!(figure("mean_free_path"), (Some(0.5), Some(0.0)));
+        let (path, error) = figure("mean_free_path");
+        assert!((path.unwrap() - 0.5_f64.sqrt()).abs() < 1e-12 && error.unwrap() < 1e-12);
         let mut measure = Collisions::new();
         assert!(show(&mut measure, &states[0])[0].is_nan());
         assert_eq!(show(&mut measure, &states[1]), [4.0]);

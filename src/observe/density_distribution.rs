@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::last_look::LastLook;
-use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
+use super::measure::{Cadence, Column, Effort, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_mean};
 use super::units::{PURE, column};
 use crate::matter::gas::Gas;
@@ -190,6 +190,10 @@ impl<V: Vector> Measure<V> for DensityDistribution {
 
     fn cadence(&self) -> Cadence {
         Cadence::Spread
+    }
+
+    fn effort(&self) -> Effort {
+        Effort::Table
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {

@@ -5,9 +5,11 @@ use super::measure::{Measure, Profile, Snapshot};
 use super::setting::Setting;
 use super::slices;
 use super::units::{LENGTH, PURE, column};
+use crate::matter::gas::Gas;
 use crate::space::Vector;
 
-/// Volume fraction in slices of one cell along gravity; else across walls; else along the longest axis.
+/// Volume fraction in slices of one cell along gravity; else across walls; else along the longest axis; in mixtures also that of
+/// each species, `volume_fraction_species_1` and so on.
 #[derive(Clone, Copy, Debug)]
 pub struct DensityProfile {
     axis: usize,
@@ -36,13 +38,26 @@ impl<V: Vector> Measure<V> for DensityProfile {
         } else {
             slices::volumes(gas, self.axis).into_iter().map(|volume| volume / slice_volume).collect()
         };
-        vec![Profile {
-            name: "density-profile".to_owned(),
-            time: gas.time(),
-            columns: vec![column("position", LENGTH), column("volume_fraction", PURE)],
-            values: vec![centres, fractions],
-        }]
+        let mut columns = vec![column("position", LENGTH), column("volume_fraction", PURE)];
+        let mut values = vec![centres, fractions];
+        for (s, volumes) in volumes_by_species(gas, self.axis).into_iter().enumerate() {
+            columns.push(column(&format!("volume_fraction_species_{}", s + 1), PURE));
+            values.push(volumes.into_iter().map(|volume| volume / slice_volume).collect());
+        }
+        vec![Profile { name: "density-profile".to_owned(), time: gas.time(), columns, values }]
     }
+}
+
+/// Volume of the grains of each species in each slice, `[species][slice]` [lengthᴰ]; empty where all grains are alike.
+fn volumes_by_species<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<Vec<f64>> {
+    let Some(species) = &gas.columns().species else { return Vec::new() };
+    let kinds = gas.species.iter().enumerate();
+    kinds
+        .map(|(s, grain)| {
+            let share = |row: usize| if usize::from(species[row]) == s { grain.volume::<V>() } else { 0.0 };
+            slices::sums(gas, axis, share)
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,20 +1,31 @@
-//! `energy`: kinetic energy, temperature, collisions and grains at every recording.
+//! `energy`: kinetic energy, temperatures, collisions and grains at every recording.
 
+use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
 use super::moments::{kinetic_energy, momentum, momentum_scale, rotational_energy, temperature};
 use super::samples::figure;
 use super::setting::Setting;
+use super::species_temperature;
 use super::units::{ENERGY, PURE, column};
+use crate::matter::gas::Gas;
 use crate::space::Vector;
 use crate::statistics::Estimate;
 
 /// Energy and what it is made of, compared with the first state that it was shown.
+///
+/// * `temperature`: ⟨m|v − v̄|²⟩/D about the velocity v̄ of the centre of mass of all grains; it contains the flow;
+/// * `granular_temperature`: about the local flow, as [`local_flow`](super::local_flow) has it, in bins of 20 grains in 2D and
+///   40 in 3D on the average over the box; NaN where no bin holds enough;
+/// * `granular_temperature_species_1` and so on, in mixtures: that of each species, in the order of the scenario;
+///   `temperature_ratio_species_2` and so on: over that of the first.
 #[derive(Clone, Debug)]
 pub struct Energy<V> {
     /// Whether nothing outside the gas can change its momentum.
     is_free: bool,
     /// z = I/(m a²) of rough grains.
     reduced_inertia: Option<f64>,
+    /// Number of species; 0 where all grains are alike.
+    species: usize,
     start: Option<Start<V>>,
 }
 
@@ -31,7 +42,30 @@ impl<V: Vector> Energy<V> {
     pub fn new(setting: &Setting<V>) -> Self {
         let is_free = setting.boundary.is_fully_periodic() && setting.gravity == V::ZERO;
         let reduced_inertia = setting.roughness.map(|roughness| roughness.reduced_inertia);
-        Energy { is_free, reduced_inertia, start: None }
+        Energy { is_free, reduced_inertia, species: setting.species, start: None }
+    }
+
+    /// Names of the temperatures about the local flow, with units.
+    fn local_columns(&self) -> Vec<Column> {
+        let mut columns = vec![column("granular_temperature", ENERGY)];
+        let by_species = |s: usize| column(&format!("granular_temperature_species_{s}"), ENERGY);
+        columns.extend((1..=self.species).map(by_species));
+        columns.extend((2..=self.species).map(|s| column(&format!("temperature_ratio_species_{s}"), PURE)));
+        columns
+    }
+
+    /// The temperatures about the local flow; NaN where there are too few grains.
+    fn local_values(&self, gas: &Gas<V>) -> Vec<f64> {
+        let flow = LocalFlow::of(gas, grains_of_a_bin::<V>());
+        let mut values = vec![flow.temperature().unwrap_or(f64::NAN)];
+        if self.species > 0 {
+            let of_species = species_temperature::temperatures(gas, &flow);
+            values.extend(&of_species);
+            values.extend(of_species.iter().skip(1).map(|temperature| temperature / of_species[0]));
+            // A gas that was made without its species tells nothing of them.
+            values.resize(2 * self.species, f64::NAN);
+        }
+        values
     }
 
     fn remember_start(&mut self, snapshot: &Snapshot<'_, V>) {
@@ -66,6 +100,7 @@ impl<V: Vector> Measure<V> for Energy<V> {
             column("grains", PURE),
         ];
         columns.extend(self.reduced_inertia.map(|_| column("rotational_energy", ENERGY)));
+        columns.extend(self.local_columns());
         columns
     }
 
@@ -76,6 +111,7 @@ impl<V: Vector> Measure<V> for Energy<V> {
         let mut values =
             vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64];
         values.extend(self.reduced_inertia.map(|z| rotational_energy(gas, z)));
+        values.extend(self.local_values(gas));
         values
     }
 
@@ -90,6 +126,8 @@ impl<V: Vector> Measure<V> for Energy<V> {
         ];
         let rotation = self.reduced_inertia.map(|z| rotational_energy(snapshot.gas, z));
         figures.extend(rotation.map(|energy| figure("rotational_energy", exact(Some(energy)))));
+        let local = self.local_columns().into_iter().zip(self.local_values(snapshot.gas));
+        figures.extend(local.map(|(column, value)| figure(&column.name, exact(Some(value)))));
         (Vec::new(), figures)
     }
 
@@ -121,7 +159,10 @@ mod tests {
     use super::*;
     use crate::engine::report::Totals;
     use crate::law::roughness::Roughness;
-    use crate::observe::testing::{assert_resumes, figure_of, setting_of, show, smooth};
+    use crate::matter::grain::Grain;
+    use crate::observe::testing::{
+        assert_resumes, figure_of, random_positions, random_velocities, setting_of, show, smooth,
+    };
     use glam::{DVec2, DVec3};
 
     #[test]
@@ -154,6 +195,37 @@ mod tests {
         assert_eq!(show(&mut Energy::new(&bed.setting), &state)[4], 1.0);
         let figure = figure_of(&mut Energy::new(&bed.setting), &[state], 0.0, "rotational_energy");
         assert_eq!(figure, (Some(1.0), None));
+    }
+
+    #[test]
+    fn a_flow_is_in_the_temperature_and_not_in_the_granular_one() {
+        let bed = setting_of(DVec2::splat(20.0), [10, 10, 1]);
+        let places = random_positions(1, 2000, DVec2::splat(20.0));
+        let velocities = random_velocities(2, 2000).into_iter().zip(&places);
+        let velocities = velocities.map(|(v, x): (DVec2, &DVec2)| v + DVec2::X * x.y).collect();
+        let state = (bed.gas(0.0, places, velocities), Totals::default());
+        let figure = |name| figure_of(&mut Energy::new(&bed.setting), &[state.clone()], 0.0, name).0.unwrap();
+        // (1 + 20²/12 + 1)/2, and 1 ± 1/√2000.
+        assert!((figure("temperature") - 17.7).abs() < 0.8, "{}", figure("temperature"));
+        assert!((figure("granular_temperature") - 1.0).abs() < 0.08, "{}", figure("granular_temperature"));
+        let values = show(&mut Energy::new(&bed.setting), &state);
+        assert_eq!(values[4], figure("granular_temperature"));
+    }
+
+    #[test]
+    fn species_are_told_apart() {
+        let mut bed = setting_of(DVec2::splat(20.0), [10, 10, 1]);
+        bed.setting.species = 2;
+        let mut gas = bed.gas(0.0, random_positions(1, 2000, DVec2::splat(20.0)), random_velocities(2, 2000));
+        let heavy = Grain { diameter: 1.0, mass: 4.0 };
+        gas.species = vec![Grain { diameter: 1.0, mass: 1.0 }, heavy];
+        gas.parts_mut().2.species = Some((0..2000).map(|row| (row % 2) as u8).collect());
+        let states = [(gas, Totals::default())];
+        let figure = |name| figure_of(&mut Energy::new(&bed.setting), &states, 0.0, name).0.unwrap();
+        assert!((figure("granular_temperature_species_1") - 1.0).abs() < 0.1);
+        assert!((figure("granular_temperature_species_2") - 4.0).abs() < 0.4);
+        let ratio = figure("granular_temperature_species_2") / figure("granular_temperature_species_1");
+        assert_eq!(figure("temperature_ratio_species_2"), ratio);
     }
 
     #[test]

@@ -96,7 +96,7 @@ impl<V: Vector> Measure<V> for ImpactParameter {
         };
         let collisions: f64 = counts.iter().sum();
         if collisions == 0.0 {
-            return (Vec::new(), vec![figure("impact_c", None)]);
+            return (Vec::new(), vec![figure("impact_c", None::<Estimate>)]);
         }
         let norm = 1.0 / (collisions * WIDTH);
         let columns = ["impact_parameter", "probability_density", "standard_error"];

@@ -44,10 +44,19 @@ impl<V: Vector> Snapshot<'_, V> {
 pub enum Cadence {
     /// Never.
     Recordings,
-    /// At 400 places spread evenly over the run's limit.
+    /// At random places spread over the run's limit, as many as its work deserves.
     Spread,
     /// Every so much time [time].
     Every(f64),
+}
+
+/// What it costs to look at one grain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Sums over the grains.
+    Sums,
+    /// Distributions or other tables over the grains, which also make long samples.
+    Table,
 }
 
 /// A quantity with its unit, as it stands in the header of a table.
@@ -111,6 +120,11 @@ pub trait Measure<V: Vector>: Send {
     /// When it wants to be shown the gas by [`Measure::sample`].
     fn cadence(&self) -> Cadence {
         Cadence::Recordings
+    }
+
+    /// What [`Measure::sample`] costs.
+    fn effort(&self) -> Effort {
+        Effort::Sums
     }
 
     /// Looks at the gas at one of its times.

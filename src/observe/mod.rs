@@ -27,9 +27,11 @@ pub mod wall_stress;
 mod density_waves;
 mod last_look;
 pub(crate) mod layout;
+pub(crate) mod local_flow;
 mod packing;
 mod samples;
 mod slices;
+mod species_temperature;
 #[cfg(test)]
 mod testing;
 mod transform;

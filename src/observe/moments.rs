@@ -71,7 +71,7 @@ pub fn largest_speed<V: Vector>(velocities: &[V]) -> f64 {
     velocities.iter().map(|velocity| velocity.length_squared()).fold(0.0, f64::max).sqrt()
 }
 
-/// Granular temperature ⟨m|v − v̄|²⟩/D about the velocity v̄ of the centre of mass of all grains
+/// Temperature ⟨m|v − v̄|²⟩/D about the velocity v̄ of the centre of mass of all grains
 /// [mass·length²/time²]; zero without grains.
 pub fn temperature<V: Vector>(gas: &Gas<V>) -> f64 {
     if gas.is_empty() {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::measure::Figure;
-use crate::statistics::{Estimate, block_average, blocks, standard_error};
+use crate::statistics::SteadyEstimate;
 
 /// Samples of a fixed number of values; each row begins with its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,13 +86,23 @@ impl Samples {
     }
 }
 
-/// Mean of one value over the rows, with its error from blocks; values that are not finite are left out.
-pub(crate) fn steady_mean(rows: &[&[f64]], value: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
-    let values: Vec<f64> = rows.iter().map(|row| value(row)).filter(|x| x.is_finite()).collect();
-    block_average(&values)
+/// Mean of one value over the time of the rows ([`SteadyEstimate`]): each row stands for half of the time to its neighbours.
+/// Values that are not finite are left out.
+pub(crate) fn steady_mean(rows: &[&[f64]], value: impl Fn(&[f64]) -> f64) -> Option<SteadyEstimate> {
+    let weights = weights(rows);
+    let pairs = rows.iter().zip(weights).map(|(row, weight)| [value(row) * weight, weight]);
+    let pairs: Vec<[f64; 2]> = pairs.filter(|[product, _]| product.is_finite()).collect();
+    SteadyEstimate::ratio(&pairs)
 }
 
-/// Means of several values over the rows and their errors from blocks, `[value]`; NaN where there is none.
+/// The time that each row stands for; 1 for a single row [time].
+pub(crate) fn weights(rows: &[&[f64]]) -> Vec<f64> {
+    let Some(last) = rows.len().checked_sub(1).filter(|last| *last > 0) else { return vec![1.0; rows.len()] };
+    let weight = |k: usize| 0.5 * (rows[(k + 1).min(last)][0] - rows[k.saturating_sub(1)][0]);
+    (0..rows.len()).map(weight).collect()
+}
+
+/// Means of several values over the time of the rows and their errors, `[value]`; NaN where there is none.
 pub(crate) fn steady_means(rows: &[&[f64]], values: Range<usize>) -> (Vec<f64>, Vec<f64>) {
     let estimates = values.map(|value| steady_mean(rows, |row| row[1 + value]));
     let pairs = estimates.map(|estimate| {
@@ -102,45 +112,40 @@ pub(crate) fn steady_means(rows: &[&[f64]], values: Range<usize>) -> (Vec<f64>, 
     pairs.unzip()
 }
 
-/// Mean of a quantity that belongs to the interval between two rows, over all neighbours.
-pub(crate) fn interval_mean(rows: &[&[f64]], value: impl Fn(&[f64], &[f64]) -> f64) -> Option<Estimate> {
-    let values: Vec<f64> =
-        rows.windows(2).map(|pair| value(pair[0], pair[1])).filter(|x| x.is_finite()).collect();
-    block_average(&values)
-}
-
-/// Growth of a running total per time over all rows, with its error from blocks.
-pub(crate) fn steady_rate(rows: &[&[f64]], total: impl Fn(&[f64]) -> f64) -> Option<Estimate> {
+/// Growth of a running total per time over all rows ([`SteadyEstimate`]).
+pub(crate) fn steady_rate(rows: &[&[f64]], total: impl Fn(&[f64]) -> f64) -> Option<SteadyEstimate> {
     steady_ratio(rows, total, |row| row[0])
 }
 
-/// Growth of a running total per growth of another one over all rows, with its error from blocks.
+/// Growth of a running total per growth of another one over all rows ([`SteadyEstimate`]).
 pub(crate) fn steady_ratio(
     rows: &[&[f64]],
     total: impl Fn(&[f64]) -> f64,
     other: impl Fn(&[f64]) -> f64,
-) -> Option<Estimate> {
-    let ratio = |first: &[f64], last: &[f64]| (total(last) - total(first)) / (other(last) - other(first));
-    let intervals = rows.len().checked_sub(1)?;
-    let parts: Vec<f64> = blocks(intervals).map(|block| ratio(rows[block.start], rows[block.end])).collect();
-    let value = ratio(rows[0], rows[intervals]);
-    value.is_finite().then(|| Estimate { value, standard_error: standard_error(&parts) })
+) -> Option<SteadyEstimate> {
+    let growth = |pair: &[&[f64]]| [total(pair[1]) - total(pair[0]), other(pair[1]) - other(pair[0])];
+    let pairs: Vec<[f64; 2]> = rows.windows(2).map(growth).collect();
+    SteadyEstimate::ratio(&pairs)
 }
 
 /// The figure of that name.
-pub(crate) fn figure(name: &str, estimate: Option<Estimate>) -> Figure {
+pub(crate) fn figure<E: Into<SteadyEstimate>>(name: &str, estimate: Option<E>) -> Figure {
+    let estimate: Option<SteadyEstimate> = estimate.map(E::into);
+    let error = estimate.and_then(|e| e.standard_error).filter(|x| x.is_finite());
+    let value = estimate.map(|e| e.value).filter(|x| x.is_finite());
     Figure {
         name: name.to_owned(),
-        value: estimate.map(|e| e.value).filter(|x| x.is_finite()),
-        standard_error: estimate.and_then(|e| e.standard_error).filter(|x| x.is_finite()),
-        degrees_of_freedom: None,
-        trend: None,
+        value,
+        standard_error: error,
+        degrees_of_freedom: error.and(estimate).and_then(|e| e.freedom),
+        trend: value.and(estimate).and_then(|e| e.trend),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Estimate;
 
     fn counted() -> Samples {
         let mut samples = Samples::new(1);
@@ -175,7 +180,9 @@ mod tests {
         let samples = counted();
         let rows = samples.since(0.0);
         let rate = steady_rate(&rows, |row| row[1]).unwrap();
-        assert_eq!(rate, Estimate { value: 2.0, standard_error: Some(0.0) });
+        assert_eq!(rate.value, 2.0);
+        // What one interval has too much the next one lacks: far less than the error 1/√20 of independent intervals.
+        assert!(rate.standard_error.unwrap() < 0.5 / 20.0_f64.sqrt(), "{rate:?}");
         assert_eq!(steady_rate(&rows[..1], |row| row[1]), None);
         assert_eq!(steady_rate(&[], |row| row[1]), None);
     }
@@ -187,5 +194,15 @@ mod tests {
         assert_eq!(steady_means(&rows, 0..1), (vec![2.0], vec![1.0]));
         assert!(steady_means(&[], 0..1).0[0].is_nan());
         assert_eq!(figure("x", Some(Estimate { value: f64::NAN, standard_error: None })).value, None);
+    }
+
+    #[test]
+    fn a_row_stands_for_the_time_around_it() {
+        // A value that stays at 1 for three times as long as at 5, seen at uneven times.
+        let rows: [&[f64]; 4] = [&[0.0, 1.0], &[2.0, 1.0], &[4.0, 1.0], &[6.0, 5.0]];
+        assert_eq!(weights(&rows), [1.0, 2.0, 2.0, 1.0]);
+        assert_eq!(steady_mean(&rows, |row| row[1]).unwrap().value, 10.0 / 6.0);
+        let ramp: [&[f64]; 4] = [&[0.0, 0.0], &[1.0, 1.0], &[5.0, 5.0], &[6.0, 6.0]];
+        assert_eq!(steady_mean(&ramp, |row| row[1]).unwrap().value, 3.0);
     }
 }

@@ -18,6 +18,8 @@ pub struct Setting<V> {
     pub boundary: Boundary<V>,
     /// Diameter and mass of a grain.
     pub grain: Grain,
+    /// Number of species; 0 where all grains are alike.
+    pub species: usize,
     /// Whether grains are poured in.
     pub is_poured: bool,
     /// How rough grains are; `None` where they do not spin.

@@ -130,7 +130,7 @@ impl<V: Vector> Measure<V> for Spectrum {
 
     fn conclusion(&self, snapshot: &Snapshot<'_, V>, _from: f64) -> (Vec<Profile>, Vec<Figure>) {
         let Some((frequencies, power)) = self.power() else {
-            return (Vec::new(), vec![figure("spectrum_slope", None)]);
+            return (Vec::new(), vec![figure("spectrum_slope", None::<Estimate>)]);
         };
         let slope = self.slope(&frequencies, &power);
         let profile = Profile {

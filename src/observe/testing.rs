@@ -28,6 +28,7 @@ pub(crate) fn setting_of<V: Vector>(size: V, cells: [u32; 3]) -> Bed<V> {
             grid: Grid::new(V::ZERO, size, &cells, &[true; 3]),
             boundary: Boundary::periodic(),
             grain: Grain { diameter: 1.0, mass: 1.0 },
+            species: 0,
             is_poured: false,
             roughness: None,
             counts_impacts: false,

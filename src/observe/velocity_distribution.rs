@@ -1,11 +1,10 @@
 //! `velocity-distribution`: velocities beside Maxwell's, and the moments of both (Müller 2001, section 3.1).
 
-use rayon::prelude::*;
-
 use super::last_look::LastLook;
 use super::layout;
-use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
-use super::moments::{kinetic_energy, mean_velocity, temperature};
+use super::local_flow::LocalFlow;
+use super::measure::{Cadence, Column, Effort, Figure, Measure, Profile, Snapshot};
+use super::moments::kinetic_energy;
 use super::samples::{Samples, figure, steady_mean, steady_means};
 use super::setting::Setting;
 use super::units::{PURE, column};
@@ -18,23 +17,28 @@ const REACH: f64 = 6.0;
 const BINS: usize = 120;
 /// Width of a bin in thermal velocities.
 const WIDTH: f64 = 2.0 * REACH / BINS as f64;
-/// Grains that a thread sums at a time; part of the definition of every sum.
-const BLOCK: usize = 4096;
+/// Grains in a bin of the flow on the average; each one moves the flow of its bin, which takes 2 (1 + D)/200 of a₂ away.
+const GRAINS_OF_A_BIN: f64 = 200.0;
 /// A thermal velocity below this share of the speeds is their rounding.
 const ROUNDING: f64 = 1e-14;
 /// The figures, as series and summary name them.
 const NAMES: [&str; 5] = ["temperature_anisotropy", "alpha_4", "alpha_6", "alpha_8", "sonine_a2"];
 
-/// Components c of the velocities about the mean velocity v̄ of all grains, in thermal velocities:
-/// c = (v − v̄) √(m/T), m the mass of the grain; those of all axes are taken together.
+/// Components c of the velocities about the local flow u, in thermal velocities: c = (v − u) √(m/T), m the mass of the
+/// grain, T about the same flow; those of all axes are taken together. The flow is that of
+/// [`local_flow`](super::local_flow), in bins of 200 grains on the average over the box; of a gas of fewer than 400 grains in a
+/// periodic box it is the velocity of their centre of mass. v − u is divided by √(1 − h), h the share of the grain in the
+/// flow of its bin.
 ///
 /// * `alpha_4`, `alpha_6`, `alpha_8`: ⟨c⁴⟩/3, ⟨c⁶⟩/15, ⟨c⁸⟩/105, the moments of a component (Müller 2001, 3.3)
 ///   over those of a Gaussian one of the same variance. σ is the gas's own, so that α₂ = ⟨c²⟩ is 1 always;
 /// * `temperature_anisotropy`: ⟨c²⟩ of the axis that density profiles run along, T of that axis over T;
-/// * `sonine_a2`: a₂ = D/(D + 2) ⟨|v − v̄|⁴⟩/⟨|v − v̄|²⟩² − 1 (van Noije and Ernst 1998).
+/// * `sonine_a2`: a₂ = D/(D + 2) ⟨|v − u|⁴⟩/⟨|v − u|²⟩² − 1 (van Noije and Ernst 1998).
 ///
 /// In a Maxwell gas of N grains with given momentum and energy, α₄ and 1 + a₂ are M/(M + 2) on the average, with
-/// M = D (N − 1), not 1: the mean and the temperature are those of the same grains.
+/// M = D (N − 1), not 1: the mean and the temperature are those of the same grains. In several bins M is D Σ (N − 1 − r), r
+/// the axes along which the flow has a gradient. A bin of N grains shows a share (1 − (1 + r)/N)² of the a₂ of its gas, of the
+/// others' velocities being mixed into the flow: 97 % in 2D, 96 % in 3D.
 #[derive(Clone, Debug)]
 pub struct VelocityDistribution {
     axis: usize,
@@ -46,28 +50,27 @@ pub struct VelocityDistribution {
 /// Sums over grains of scaled velocities.
 #[derive(Clone, Debug)]
 struct Tally {
-    /// Σ c² of one axis, Σ c⁴, Σ c⁶, Σ c⁸ over all axes, Σ |c|⁴.
-    powers: [f64; 5],
+    /// Σ c⁴, Σ c⁶, Σ c⁸ over all axes, Σ |c|⁴.
+    powers: [f64; 4],
     /// `[bin]`.
     counts: [u32; BINS],
 }
 
 impl Tally {
     fn new() -> Self {
-        Tally { powers: [0.0; 5], counts: [0; BINS] }
+        Tally { powers: [0.0; 4], counts: [0; BINS] }
     }
 
     #[inline]
-    fn count<V: Vector>(&mut self, scaled: V, axis: usize) {
+    fn count<V: Vector>(&mut self, scaled: V) {
         let square = scaled.length_squared();
-        self.powers[0] += scaled[axis] * scaled[axis];
-        self.powers[4] += square * square;
+        self.powers[3] += square * square;
         for a in 0..V::DIMENSION {
             let second = scaled[a] * scaled[a];
             let fourth = second * second;
-            self.powers[1] += fourth;
-            self.powers[2] += fourth * second;
-            self.powers[3] += fourth * fourth;
+            self.powers[0] += fourth;
+            self.powers[1] += fourth * second;
+            self.powers[2] += fourth * fourth;
             let place = (scaled[a] + REACH) * (1.0 / WIDTH);
             if (0.0..BINS as f64).contains(&place) {
                 self.counts[place as usize] += 1;
@@ -83,13 +86,14 @@ impl Tally {
 
 /// What the gas shows: the figures, then the density of each bin; NaN of a gas that does not move.
 fn look<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<f64> {
-    let Some(tally) = tally(gas, axis) else { return vec![f64::NAN; NAMES.len() + BINS] };
-    let grains = gas.len() as f64;
+    let flow = LocalFlow::of(gas, GRAINS_OF_A_BIN);
+    let Some(tally) = tally(gas, &flow) else { return vec![f64::NAN; NAMES.len() + BINS] };
+    let grains = flow.grains() as f64;
     let dimension = V::DIMENSION as f64;
     let components = grains * dimension;
-    let [along, fourth, sixth, eighth, fourth_of_speed] = tally.powers;
+    let [fourth, sixth, eighth, fourth_of_speed] = tally.powers;
     let mut row = vec![
-        along / grains,
+        flow.anisotropy(axis),
         fourth / (3.0 * components),
         sixth / (15.0 * components),
         eighth / (105.0 * components),
@@ -99,29 +103,27 @@ fn look<V: Vector>(gas: &Gas<V>, axis: usize) -> Vec<f64> {
     row
 }
 
-/// The sums over all grains, block by block; `None` of a gas without thermal motion.
-fn tally<V: Vector>(gas: &Gas<V>, axis: usize) -> Option<Tally> {
-    let (mean, temperature) = (mean_velocity(gas), temperature(gas));
-    let squares = temperature * (gas.len() * V::DIMENSION) as f64;
+/// The sums over all grains, bin by bin; `None` of a gas without thermal motion.
+fn tally<V: Vector>(gas: &Gas<V>, flow: &LocalFlow<V>) -> Option<Tally> {
+    let temperature = flow.temperature()?;
     let rounding = ROUNDING * ROUNDING * 2.0 * kinetic_energy(gas);
-    if squares <= rounding {
+    if temperature * flow.freedom() <= rounding {
         return None;
     }
     let scale = |mass: f64| (mass / temperature).sqrt();
     let alike = gas.species.is_empty().then(|| scale(gas.grain.mass));
-    let blocks: Vec<Tally> = (0..gas.len().div_ceil(BLOCK))
-        .into_par_iter()
-        .map(|block| {
-            let mut tally = Tally::new();
-            for row in block * BLOCK..gas.len().min((block + 1) * BLOCK) {
-                let scale = alike.unwrap_or_else(|| scale(gas.grain_at(row).mass));
-                tally.count((gas.velocities()[row] - mean) * scale, axis);
-            }
-            tally
-        })
-        .collect();
+    let (positions, velocities) = (gas.positions(), gas.velocities());
+    let bins = flow.each_bin(gas, |flow, rows| {
+        let mut tally = Tally::new();
+        for row in rows {
+            let mass = gas.grain_at(row).mass;
+            let scale = alike.unwrap_or_else(|| scale(mass));
+            tally.count(flow.peculiar(mass, positions[row], velocities[row]) * scale);
+        }
+        tally
+    });
     let mut total = Tally::new();
-    blocks.iter().for_each(|block| total.add(block));
+    bins.iter().flatten().for_each(|bin| total.add(bin));
     Some(total)
 }
 
@@ -164,6 +166,10 @@ impl<V: Vector> Measure<V> for VelocityDistribution {
 
     fn cadence(&self) -> Cadence {
         Cadence::Spread
+    }
+
+    fn effort(&self) -> Effort {
+        Effort::Table
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {

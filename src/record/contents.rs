@@ -65,12 +65,27 @@ pub struct Frame {
     pub ids: Vec<u32>,
 }
 
+/// `place`, a coordinate in single precision [length], brought back into `lower` … `upper` [length] where only its rounding
+/// has carried it out; a place that is farther out stays.
+///
+/// Rounding keeps order: what was inside at full precision is never beyond the rounded ends.
+pub fn within_rounding(place: f64, lower: f64, upper: f64) -> f64 {
+    if place > upper && place <= f64::from(upper as f32) {
+        upper
+    } else if place < lower && place >= f64::from(lower as f32) {
+        lower
+    } else {
+        place
+    }
+}
+
 /// The box and which of its sides are walls.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Walls {
-    /// Lower corner [length]; z = 0 in 2D.
+    /// Lower corner of the space that grains may be in, the strokes of vibrating walls included [length]; z = 0 in 2D.
+    /// Logs written before walls were so have a vibrating wall at its mean place.
     pub lower: [f64; 3],
-    /// Upper corner [length]; z = 0 in 2D.
+    /// Upper corner, likewise [length]; z = 0 in 2D.
     pub upper: [f64; 3],
     /// `[axis][side]`: `wall`, `open`, `periodic` or, for an axis that does not exist, empty.
     pub sides: [[String; 2]; 3],

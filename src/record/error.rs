@@ -87,6 +87,14 @@ pub enum LogError {
         /// What does not fit.
         reason: String,
     },
+    /// Its chunks are compressed in a way that is not read here.
+    #[error("the log {} has chunks compressed by {compression:?}, and this program reads zstd and chunks without compression: write it again with `mcap compress {} --compression zstd --output NEW.mcap`", path.display(), path.display())]
+    Compression {
+        /// The log.
+        path: PathBuf,
+        /// What the chunks say.
+        compression: String,
+    },
     /// A state in it is none of the run.
     #[error("the log {}: {reason}; its checksums hold, so that somebody has changed it and made them anew: copy the log again from where it came from", path.display())]
     Unfit {

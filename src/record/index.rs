@@ -19,7 +19,7 @@ mod places;
 mod records;
 
 use head::Head;
-use places::{Places, Spot};
+use places::{Indexed, Places, Spot};
 use records::Records;
 
 /// A log of which any frame can be read without those before it. Threads may share it.
@@ -43,12 +43,14 @@ pub struct Moment {
 
 impl LogIndex {
     /// Opens the log at `path`. One with an index is not read further; its checksums are looked at when a part is read.
-    /// Another one is read once; where it was cut off, what is complete is there and [`RunLog::cut_off`] says so.
+    /// Another one is read once, and so is one whose ticks do not tell the times of its recordings; where it was cut off, what
+    /// is complete is there and [`RunLog::cut_off`] says so.
     pub fn open(path: &Path) -> Result<Self, LogError> {
         let records = Records::open(path)?;
         match Self::by_summary(&records)? {
-            Some((head, places)) => Ok(LogIndex { records, head, places, was_made: false }),
-            None => Self::by_pass(records),
+            Some((head, Indexed::Whole(places))) => Ok(LogIndex { records, head, places, was_made: false }),
+            Some((_, Indexed::WithoutTimes)) => Ok(LogIndex { was_made: false, ..Self::by_pass(records)? }),
+            Some((_, Indexed::Unfit)) | None => Self::by_pass(records),
         }
     }
 
@@ -72,9 +74,10 @@ impl LogIndex {
         self.places.recordings.len()
     }
 
-    /// When frame `number` was taken, to a tick of the log [time].
+    /// When frame `number` was taken: to a tick of the log, where these are much finer than the pauses between recordings,
+    /// else as exactly as the messages say it [time].
     pub fn frame_time(&self, number: usize) -> Option<f64> {
-        Some(self.places.frames.get(number)?.tick as f64 / self.head.time_scale())
+        Some(self.places.frames.get(number)?.time)
     }
 
     /// The row of the series to which frame `number` belongs.
@@ -128,8 +131,8 @@ impl LogIndex {
         Ok(species)
     }
 
-    /// The index as it stands at the end of the file, if it is there and fits.
-    fn by_summary(records: &Records) -> Result<Option<(Head, Places)>, LogError> {
+    /// The index as it stands at the end of the file, if it is there.
+    fn by_summary(records: &Records) -> Result<Option<(Head, Indexed)>, LogError> {
         let Some(summary) = records.summary() else { return Ok(None) };
         let mut head = Head::default();
         let mut start = mcap::MAGIC.len() as u64;
@@ -149,13 +152,13 @@ impl LogIndex {
         if !head.is_log {
             return Ok(None);
         }
-        let Some(places) = Places::by_summary(&summary, records, &head)? else { return Ok(None) };
-        if let Some(chunk) = places.walls {
+        let found = Places::by_summary(&summary, records, &head)?;
+        if let Indexed::Whole(Places { walls: Some(chunk), .. }) = found {
             for record in records.chunk(chunk)? {
                 head.add(&record).map_err(|fault| fault.at(records.path(), chunk))?;
             }
         }
-        Ok(Some((head, places)))
+        Ok(Some((head, found)))
     }
 
     /// An index made by reading everything once.
@@ -170,8 +173,8 @@ impl LogIndex {
                     let chunk = records.unpack(start, &raw.body)?;
                     places.begin_chunk(start);
                     for record in &chunk {
-                        head.add(record).map_err(|fault| fault.at(records.path(), start))?;
-                        places.add(record, &head);
+                        let taken = head.add(record).and_then(|()| places.add(record, &head));
+                        taken.map_err(|fault| fault.at(records.path(), start))?;
                     }
                 }
                 op::DATA_END => data_ended = true,

@@ -38,18 +38,34 @@ pub fn read_tables(path: &Path) -> Result<RunLog, LogError> {
     Ok(RunLog { cut_off, ..contents.log })
 }
 
-/// Metadata and scenario of the log at `path`, once all its checksums are seen to hold; what follows them is not kept.
-pub fn read_origin(path: &Path) -> Result<(BTreeMap<String, String>, String), LogError> {
-    let (mut metadata, mut scenario) = Default::default();
-    scan(path, &mut |event| {
+/// What tells which run a log is of, and whether all of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// Version, numerics, seed, engine, units and the like, as `key = value`.
+    pub metadata: BTreeMap<String, String>,
+    /// The scenario as TOML text.
+    pub scenario: String,
+    /// The state hash of the last recording, in hexadecimal digits; empty where there is none.
+    pub last_hash: String,
+    /// What is missing, as a sentence, where the file was cut off.
+    pub cut_off: Option<String>,
+}
+
+/// The origin of the log at `path`, once all its checksums are seen to hold.
+pub fn read_origin(path: &Path) -> Result<Origin, LogError> {
+    let mut origin = Origin::default();
+    let cut_off = scan(path, &mut |event| {
         match event {
-            Event::Metadata(found) => metadata = found,
-            Event::Scenario(found) => scenario = found,
+            Event::Metadata(found) => origin.metadata = found,
+            Event::Scenario(found) => origin.scenario = found,
+            Event::Message { topic: topic::MEASURES, data, .. } => {
+                origin.last_hash = MeasuresMessage::decode(data, &[]).map_err(Fault::damage)?.state_hash;
+            }
             _ => {}
         }
         Ok(())
     })?;
-    Ok((metadata, scenario))
+    Ok(Origin { cut_off, ..origin })
 }
 
 /// All complete saved states of the log at `path`, in the order of their times.

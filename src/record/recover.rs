@@ -5,12 +5,14 @@ use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
-use mcap::records::{Channel, MessageHeader, Record, op};
+use mcap::McapError;
+use mcap::records::{Channel, MessageHeader, Record, SchemaHeader, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::error::LogError;
-use super::scan::{BLOCK, holds_attachment, length_limit, open, scan};
+use super::scan::{BLOCK, NO_SCHEMA, UNREAD_COMPRESSION, holds_attachment, length_limit, open, scan};
 use super::schema;
+use super::schema::measures::{MeasuresMessage, TIME};
 use super::writer::options;
 
 /// What a recovery found.
@@ -34,8 +36,11 @@ pub struct Recovery {
 /// so under `recovered`; nothing, and `None`, where the log is whole. Chunks and attachments have checksums of their own;
 /// the metadata and the descriptions have none, and are taken as they stand where they can be read at all.
 pub fn recover(damaged: &Path, clean: &Path) -> Result<Option<Recovery>, LogError> {
-    if let Ok(None) = scan(damaged, &mut |_| Ok(())) {
-        return Ok(None);
+    match scan(damaged, &mut |_| Ok(())) {
+        Ok(None) => return Ok(None),
+        // Nothing is wrong with it: it is not readable here.
+        Err(error @ LogError::Compression { .. }) => return Err(error),
+        Ok(Some(_)) | Err(_) => {}
     }
     if clean.exists() {
         return Err(LogError::Exists { path: clean.to_owned() });
@@ -67,7 +72,7 @@ fn write(damaged: &Path, clean: &Path, known: &mut Known, recovery: &mut Recover
         Record::Message { header, data } => {
             let Some(topic) = known.topic(&header) else { return Ok(()) };
             recovery.messages += 1;
-            count.note(topic, &header, known.time_scale(), recovery);
+            count.note(topic, &header, &data, recovery);
             writer.write_to_known_channel(&header, &data).map_err(failed)
         }
         _ => Ok(()),
@@ -86,7 +91,7 @@ struct Count {
 }
 
 impl Count {
-    fn note(&mut self, topic: &str, header: &MessageHeader, time_scale: f64, recovery: &mut Recovery) {
+    fn note(&mut self, topic: &str, header: &MessageHeader, data: &[u8], recovery: &mut Recovery) {
         let (count, next) = self.seen.entry(header.channel_id).or_default();
         if header.sequence > *next && schema::topic::COUNTED.contains(&topic) {
             *recovery.lost.entry(topic.to_owned()).or_default() += u64::from(header.sequence - *next);
@@ -95,7 +100,9 @@ impl Count {
         *count += 1;
         *next = header.sequence.saturating_add(1);
         if topic == schema::topic::MEASURES {
-            recovery.end = Some(header.log_time as f64 / time_scale);
+            // A message whose checksum holds and that says no time is none of a run.
+            let time = MeasuresMessage::decode(data, &[TIME]).map(|message| message.values[0]);
+            recovery.end = time.ok().or(recovery.end);
         }
     }
 
@@ -116,7 +123,7 @@ impl Count {
 struct Known {
     metadata: Vec<mcap::records::Metadata>,
     attachments: Vec<mcap::Attachment<'static>>,
-    schemas: Vec<(u16, String, Vec<u8>)>,
+    schemas: Vec<(SchemaHeader, Vec<u8>)>,
     channels: Vec<Channel>,
     /// Messages by number of the channel, where the index says so.
     counts: BTreeMap<u16, u64>,
@@ -136,8 +143,8 @@ impl Known {
                     data: data.into_owned().into(),
                 });
             }
-            Record::Schema { header, data } if !self.schemas.iter().any(|one| one.0 == header.id) => {
-                self.schemas.push((header.id, header.name, data.into_owned()));
+            Record::Schema { header, data } if !self.schemas.iter().any(|one| one.0.id == header.id) => {
+                self.schemas.push((header, data.into_owned()));
             }
             Record::Channel(channel) if !self.channels.iter().any(|one| one.id == channel.id) => {
                 self.channels.push(channel);
@@ -155,13 +162,6 @@ impl Known {
         Ok(())
     }
 
-    /// Ticks per unit of time.
-    fn time_scale(&self) -> f64 {
-        let scale =
-            self.metadata.iter().find_map(|one| one.metadata.get(schema::TIME_SCALE_KEY)?.parse().ok());
-        scale.unwrap_or(f64::NAN)
-    }
-
     /// The topic of a message whose channel is known.
     fn topic(&self, header: &MessageHeader) -> Option<&str> {
         let channel = self.channels.iter().find(|channel| channel.id == header.channel_id)?;
@@ -175,10 +175,12 @@ impl Known {
         for attachment in &self.attachments {
             writer.attach(attachment)?;
         }
-        for (id, name, data) in &self.schemas {
-            writer.add_schema_with_id(*id, name, "protobuf", data)?;
+        for (header, data) in &self.schemas {
+            writer.add_schema_with_id(header.id, &header.name, &header.encoding, data)?;
         }
-        self.channels.retain(|channel| self.schemas.iter().any(|one| one.0 == channel.schema_id));
+        self.channels.retain(|channel| {
+            channel.schema_id == NO_SCHEMA || self.schemas.iter().any(|one| one.0.id == channel.schema_id)
+        });
         for one in &self.channels {
             writer.add_channel_with_id(
                 one.id,
@@ -211,8 +213,11 @@ fn each_sound_record(
                 reader.notify_read(read);
             }
             Ok(LinearReadEvent::Record { opcode: op::CHUNK, data }) => match chunk_records(data, limit) {
-                Some(records) => records.into_iter().try_for_each(&mut *visit)?,
-                None => damaged_parts += 1,
+                Ok(records) => records.into_iter().try_for_each(&mut *visit)?,
+                Err(McapError::UnsupportedCompression(compression)) if compression == UNREAD_COMPRESSION => {
+                    return Err(LogError::Compression { path: path.to_owned(), compression });
+                }
+                Err(_) => damaged_parts += 1,
             },
             Ok(LinearReadEvent::Record { opcode, data }) => match sound(opcode, data) {
                 Some(record) => visit(record)?,
@@ -234,8 +239,8 @@ fn sound(opcode: u8, data: &[u8]) -> Option<Record<'_>> {
     mcap::parse_record(opcode, data).ok()
 }
 
-/// The records of a chunk whose checksum holds.
-pub(crate) fn chunk_records(chunk: &[u8], limit: usize) -> Option<Vec<Record<'static>>> {
+/// The records of a chunk whose checksum holds; else why there are none.
+pub(crate) fn chunk_records(chunk: &[u8], limit: usize) -> Result<Vec<Record<'static>>, McapError> {
     let alone = LinearReaderOptions::default()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
@@ -248,15 +253,15 @@ pub(crate) fn chunk_records(chunk: &[u8], limit: usize) -> Option<Vec<Record<'st
     let mut rest = input.as_slice();
     let mut records = Vec::new();
     while let Some(event) = reader.next_event() {
-        match event.ok()? {
+        match event? {
             LinearReadEvent::ReadRequest(wanted) => {
-                let read = rest.read(reader.insert(wanted.clamp(1, BLOCK))).ok()?;
+                let read = rest.read(reader.insert(wanted.clamp(1, BLOCK)))?;
                 reader.notify_read(read);
             }
             LinearReadEvent::Record { opcode, data } => {
-                records.push(mcap::parse_record(opcode, data).ok()?.into_owned());
+                records.push(mcap::parse_record(opcode, data)?.into_owned());
             }
         }
     }
-    Some(records)
+    Ok(records)
 }

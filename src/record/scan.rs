@@ -15,6 +15,10 @@ use super::schema;
 
 /// Bytes read at a time.
 pub(crate) const BLOCK: usize = 1 << 18;
+/// The compression of MCAP that is not read here.
+pub(crate) const UNREAD_COMPRESSION: &str = "lz4";
+/// The number that a channel without a schema gives for it.
+pub(crate) const NO_SCHEMA: u16 = 0;
 /// A record may always be this long; a longer one has to be plausible for the length of the file.
 const USUAL_LIMIT: u64 = 1 << 28;
 
@@ -84,6 +88,8 @@ pub(crate) enum Fault {
     Dimension(u32, usize),
     /// Messages are missing: their topic and their places in the sequence.
     Missing(String, Range<u32>),
+    /// Chunks have a compression that is not read here: its name.
+    Compression(String),
     /// Another log cannot be written.
     Other(LogError),
     /// Anything else.
@@ -104,6 +110,7 @@ impl Fault {
             Fault::Missing(topic, missing) => {
                 LogError::Missing { path, topic, first: missing.start, last: missing.end - 1 }
             }
+            Fault::Compression(compression) => LogError::Compression { path, compression },
             Fault::Other(error) => error,
             Fault::Damage(reason) => LogError::Damaged { path, position, reason },
         }
@@ -114,6 +121,8 @@ impl From<McapError> for Fault {
     fn from(error: McapError) -> Self {
         match error {
             McapError::UnexpectedEof => Fault::End,
+            // Any other name is a wrong byte in the one that was written.
+            McapError::UnsupportedCompression(name) if name == UNREAD_COMPRESSION => Fault::Compression(name),
             other => Fault::damage(other),
         }
     }
@@ -204,7 +213,11 @@ impl Progress {
                 Ok(())
             }
             Record::Channel(channel) if !self.data_ended => {
-                let description = self.schemas.get(&channel.schema_id);
+                // A channel of another program may do without; nothing here reads it.
+                let description = match channel.schema_id {
+                    NO_SCHEMA => Some(&[][..]),
+                    id => self.schemas.get(&id).map(Vec::as_slice),
+                };
                 let description = description.ok_or_else(|| Fault::damage("a channel lacks its schema"))?;
                 let (topic, metadata) = (channel.topic.as_str(), &channel.metadata);
                 visit(Event::Channel { topic, description, metadata })?;

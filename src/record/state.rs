@@ -60,7 +60,20 @@ pub struct Beginning<V> {
     pub momentum_scale: f64,
 }
 
+/// A measure that every run has and that samples.
+const COLLISIONS: &str = "collisions";
+/// Samples of versions that took 400 at even places of a run have numbers from 1 to 401; later ones are 0 or above this.
+const LARGEST_EVEN_SAMPLE: u64 = 401;
+
 impl<V: Vector> SavedState<'_, V> {
+    /// Whether its measures sampled at even places of the run, as versions before the one with random places did.
+    pub fn has_even_samples(&self) -> bool {
+        self.memories
+            .iter()
+            .zip(&self.samples)
+            .any(|((name, _), number)| name == COLLISIONS && (1..=LARGEST_EVEN_SAMPLE).contains(number))
+    }
+
     /// Takes the gas of this state out of it, into the box of `grid`.
     pub fn take_gas(&mut self, grid: Grid<V>, grain: Grain) -> Gas<V> {
         let clock = Clock::restored(self.time, self.compensation);

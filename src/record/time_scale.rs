@@ -24,6 +24,13 @@ pub fn time_scale(duration: f64, shortest_interval: f64) -> u64 {
     scale
 }
 
+/// Whether rising `ticks` of recordings tell their times: none beyond the range, and pauses so long that the rounding to a
+/// tick is lost in them.
+pub(crate) fn tell_times(ticks: &[u64]) -> bool {
+    let are_apart = ticks.windows(2).all(|pair| pair[1].saturating_sub(pair[0]) as f64 >= APART);
+    are_apart && ticks.last().is_none_or(|&last| last < i64::MAX as u64)
+}
+
 /// The tick of `time` [time] at `scale` ticks per unit; times beyond the range are its ends.
 pub(crate) fn tick(time: f64, scale: u64) -> u64 {
     ((time * scale as f64).round() as u64).min(i64::MAX as u64)
@@ -48,6 +55,13 @@ mod tests {
         assert_eq!(time_scale(1e30, 1e20), 1);
         // Both wishes cannot be had: the range comes first.
         assert!(1e9 * time_scale(1e9, 1e-9) as f64 <= MOST);
+    }
+
+    #[test]
+    fn ticks_tell_times_where_they_are_far_apart_and_in_range() {
+        assert!(tell_times(&[]) && tell_times(&[7]) && tell_times(&[0, 1000, 2500]));
+        assert!(!tell_times(&[0, 1000, 1000]) && !tell_times(&[0, 999]));
+        assert!(!tell_times(&[0, 5000, i64::MAX as u64]));
     }
 
     #[test]

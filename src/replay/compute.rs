@@ -12,7 +12,7 @@ use crate::matter::columns::Columns;
 use crate::matter::gas::Gas;
 use crate::observe::measure::{Cadence, Column, Dimension, Measure, Snapshot};
 use crate::observe::measures;
-use crate::record::contents::Frame;
+use crate::record::contents::{Frame, within_rounding};
 use crate::record::error::LogError;
 use crate::record::overview::{Overview, overview};
 use crate::record::walk::{each_frame, each_state};
@@ -231,20 +231,23 @@ impl<'s, V: Vector> Look<'s, V> {
     }
 }
 
-/// The grains of `frame` as a gas: every position is moved by its rounding.
+/// The grains of `frame` as a gas: every position is moved by its rounding, though not out of the box.
 fn gas_of<V: Vector>(scenario: &Scenario<V>, frame: &Frame, kinds: &Kinds) -> Gas<V> {
-    let vectors = |of: &[[f32; 3]]| of.iter().map(|row| V::from_fn(|axis| f64::from(row[axis]))).collect();
+    let grid = scenario.grid();
+    let (lower, upper) = (grid.origin(), grid.end());
+    let vector = |row: &[f32; 3]| V::from_fn(|axis| f64::from(row[axis]));
+    let inside = |place: V| V::from_fn(|axis| within_rounding(place[axis], lower[axis], upper[axis]));
     let species = || frame.ids.iter().map(|&id| kinds.species_of(id)).collect();
     let columns = Columns {
-        positions: vectors(&frame.positions),
-        velocities: vectors(&frame.velocities),
+        positions: frame.positions.iter().map(|row| inside(vector(row))).collect(),
+        velocities: frame.velocities.iter().map(vector).collect(),
         ids: frame.ids.clone(),
         spins: None,
         species: (!scenario.species.is_empty()).then(species),
     };
     let next_id = frame.ids.last().map_or(0, |id| id + 1);
     let clock = Clock::restored(frame.time, 0.0);
-    Gas::restored(scenario.grid(), scenario.grain, columns, clock, next_id)
+    Gas::restored(grid, scenario.grain, columns, clock, next_id)
 }
 
 /// Measures that the run of `scenario` has stored.

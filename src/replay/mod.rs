@@ -13,7 +13,6 @@ use crate::record::contents::Walls;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Units};
 use crate::scenario::{Overrides, parse};
-use crate::space::Vector;
 
 /// The scenario in a log is none that this version takes.
 #[derive(Debug, thiserror::Error)]
@@ -41,8 +40,8 @@ pub fn scenario_of(
 /// The box of `scenario`, as logs describe it.
 pub fn walls_of(scenario: &AnyScenario) -> Walls {
     match scenario {
-        AnyScenario::Two(scenario) => Walls::new(&scenario.boundary, Vector::ZERO, scenario.size),
-        AnyScenario::Three(scenario) => Walls::new(&scenario.boundary, Vector::ZERO, scenario.size),
+        AnyScenario::Two(scenario) => scenario.walls(),
+        AnyScenario::Three(scenario) => scenario.walls(),
     }
 }
 

@@ -1,5 +1,7 @@
 //! The part of a log that somebody asks for.
 
+use crate::simulation::schedule::ROUNDING;
+
 /// Which recordings, states or frames of a log are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
@@ -24,9 +26,11 @@ impl Selection {
         Picker { selection: self, seen: 0 }
     }
 
-    /// Whether `time` [time] lies in the span.
+    /// Whether `time` [time] lies in the span. Its ends are typed as decimal numbers and times are sums: one that is at an end
+    /// but for rounding belongs to the span.
     pub fn spans(&self, time: f64) -> bool {
-        self.from <= time && time <= self.to
+        let slack = ROUNDING * time.abs();
+        self.from <= time + slack && time - slack <= self.to
     }
 
     /// The span in words, as in `from t = 2 to the end`.
@@ -71,6 +75,10 @@ mod tests {
         assert_eq!(picked(Selection { from: 2.0, to: 7.0, every: 2 }), [2, 4, 6]);
         assert_eq!(picked(Selection::default()).len(), 10);
         assert_eq!(picked(Selection { from: 3.5, ..Selection::default() })[0], 4);
+        // 3 · 0.2 and 0.1 + 0.2 are one step of double precision beyond the numbers that are typed.
+        let at = |time: f64| Selection { from: time, to: time, every: 1 };
+        assert!(at(0.6).spans(3.0 * 0.2) && at(0.3).spans(0.1 + 0.2) && at(0.9).spans(3.0 * 0.3));
+        assert!(!at(0.3).spans(0.3 + 1e-15) && !at(0.3).spans(0.3 - 1e-15));
         assert_eq!(Selection { from: 2.0, ..Selection::default() }.words(), "from t = 2 to the end");
     }
 }

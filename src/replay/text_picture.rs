@@ -1,10 +1,49 @@
 //! The density of the grains, drawn with characters of a terminal.
 //!
 //! With colours a character shows two fields above each other (`▀`), each in the colour of its volume fraction; without
-//! them eight dots (braille), each dark where there is a grain.
+//! them eight dots (braille), each dark where there is a grain. How many colours there are is up to the terminal.
 
-use crate::record::contents::{Frame, Walls};
+use crate::record::contents::{Frame, Walls, within_rounding};
 use crate::report::field_colour;
+
+/// The colours of a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colours {
+    /// None.
+    Plain,
+    /// The eight of ECMA-48, whose shades are the terminal's own.
+    Eight,
+    /// Those and a cube of six shades of each of red, green and blue (xterm).
+    TwoHundred,
+    /// 24 bits.
+    True,
+}
+
+/// Shades of the cube of colours.
+const SHADES: [u8; 6] = [0, 95, 135, 175, 215, 255];
+
+impl Colours {
+    /// The parameters that make `rgb`, or what comes nearest, the colour of characters, or of the ground behind them.
+    fn parameters(self, rgb: [u8; 3], is_ground: bool) -> String {
+        let base = if is_ground { 40 } else { 30 };
+        match self {
+            Colours::Plain => "0".to_owned(),
+            Colours::Eight => {
+                let bit = |k: usize| u8::from(rgb[k] >= 128) << k;
+                (base + bit(0) + bit(1) + bit(2)).to_string()
+            }
+            Colours::TwoHundred => {
+                let nearest = |value: u8| (0..6).min_by_key(|&k| SHADES[k].abs_diff(value)).unwrap_or(0);
+                let [r, g, b] = rgb.map(nearest);
+                format!("{};5;{}", base + 8, 16 + 36 * r + 6 * g + b)
+            }
+            Colours::True => {
+                let [r, g, b] = rgb;
+                format!("{};2;{r};{g};{b}", base + 8)
+            }
+        }
+    }
+}
 
 /// A part of the plane that is drawn: seen along z in 2D, along y in 3D.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +52,8 @@ pub struct Canvas {
     pub columns: usize,
     /// Lines, at most.
     pub lines: usize,
-    /// Whether colours may be used.
-    pub is_coloured: bool,
+    /// The colours that may be used.
+    pub colours: Colours,
     /// Lower and upper ends of what is shown, across and up [length].
     window: [[f64; 2]; 2],
     /// The axis that points up.
@@ -26,7 +65,7 @@ const PLAIN: &str = "\x1b[0m";
 
 impl Canvas {
     /// A view of the box `walls` in at most `columns` characters and `lines`.
-    pub fn new(walls: &Walls, columns: usize, lines: usize, is_coloured: bool) -> Self {
+    pub fn new(walls: &Walls, columns: usize, lines: usize, colours: Colours) -> Self {
         let up = if walls.sides[2][0].is_empty() { 1 } else { 2 };
         let window = [0, up].map(|axis| [walls.lower[axis], walls.upper[axis]]);
         let [width, height] = window.map(|ends| ends[1] - ends[0]);
@@ -36,7 +75,7 @@ impl Canvas {
         Canvas {
             columns: (width * scale).round().clamp(1.0, columns) as usize,
             lines: (0.5 * height * scale).ceil().clamp(1.0, 0.5 * halves) as usize,
-            is_coloured,
+            colours,
             window,
             up,
         }
@@ -44,7 +83,7 @@ impl Canvas {
 
     /// `frame` as lines of text, the upper one first. `diameter` [length] makes fractions of counts.
     pub fn draw(&self, frame: &Frame, diameter: f64) -> Vec<String> {
-        if self.is_coloured { self.blocks(frame, diameter) } else { self.dots(frame) }
+        if self.colours == Colours::Plain { self.dots(frame) } else { self.blocks(frame, diameter) }
     }
 
     /// Grains in each of `fine` fields, `[row][column]`, the upper row first.
@@ -53,7 +92,8 @@ impl Canvas {
         for position in &frame.positions {
             let share = |along: usize, axis: usize| {
                 let [lower, upper] = self.window[along];
-                (f64::from(position[axis]) - lower) / (upper - lower)
+                let place = within_rounding(f64::from(position[axis]), lower, upper);
+                (place - lower) / (upper - lower)
             };
             let [across, up] = [share(0, 0), share(1, self.up)];
             if (0.0..=1.0).contains(&across) && (0.0..=1.0).contains(&up) {
@@ -80,8 +120,8 @@ impl Canvas {
             for (&above, &below) in pair[0].iter().zip(&pair[1]) {
                 let colours = [above, below].map(|count| field_colour(self.share(f64::from(count) * covers)));
                 if last != Some(colours) {
-                    let [[r, g, b], [red, green, blue]] = colours;
-                    line += &format!("\x1b[38;2;{r};{g};{b}m\x1b[48;2;{red};{green};{blue}m");
+                    let [above, below] = [0, 1].map(|k| self.colours.parameters(colours[k], k == 1));
+                    line += &format!("\x1b[{above}m\x1b[{below}m");
                     last = Some(colours);
                 }
                 line.push('▀');
@@ -134,7 +174,7 @@ mod tests {
     #[test]
     fn the_picture_fits_and_keeps_the_shape_of_the_box() {
         let size = |width, height| {
-            let canvas = Canvas::new(&walls(width, height), 80, 20, false);
+            let canvas = Canvas::new(&walls(width, height), 80, 20, Colours::Plain);
             (canvas.columns, canvas.lines)
         };
         assert_eq!(size(40.0, 20.0), (80, 20));
@@ -144,7 +184,7 @@ mod tests {
 
     #[test]
     fn dots_stand_where_grains_are() {
-        let canvas = Canvas::new(&walls(4.0, 4.0), 2, 1, false);
+        let canvas = Canvas::new(&walls(4.0, 4.0), 2, 1, Colours::Plain);
         assert_eq!((canvas.columns, canvas.lines), (2, 1));
         let low_left = frame(&[[0.1, 0.1, 0.0]]);
         assert_eq!(canvas.draw(&low_left, 1.0), ["\u{2840}\u{2800}"]);
@@ -153,13 +193,33 @@ mod tests {
     }
 
     #[test]
+    fn a_grain_on_a_wall_is_drawn_though_its_place_is_rounded_out() {
+        let canvas = Canvas::new(&walls(0.6, 0.6), 2, 1, Colours::Plain);
+        assert_eq!(canvas.draw(&frame(&[[0.6, 0.6, 0.0]]), 0.05), ["\u{2800}\u{2808}"]);
+    }
+
+    #[test]
     fn colours_tell_the_share_that_is_covered() {
-        let canvas = Canvas::new(&walls(2.0, 2.0), 2, 1, true);
+        let canvas = Canvas::new(&walls(2.0, 2.0), 2, 1, Colours::True);
         let lines = canvas.draw(&frame(&[[0.5, 1.5, 0.0]]), 1.0);
         let colour = |share: f64| field_colour(share).map(|part| part.to_string()).join(";");
         let full = colour(std::f64::consts::FRAC_PI_4);
         assert!(lines[0].starts_with(&format!("\x1b[38;2;{full}m\x1b[48;2;{}m▀", colour(0.0))), "{lines:?}");
         assert_eq!(lines[0].matches('▀').count(), 2);
         assert!(lines[0].ends_with(PLAIN));
+    }
+
+    #[test]
+    fn terminals_of_few_colours_get_the_nearest_of_theirs() {
+        let [yellow, violet] = [[253, 231, 37], [68, 1, 84]];
+        assert_eq!(Colours::Eight.parameters(yellow, false), "33");
+        assert_eq!(Colours::Eight.parameters(violet, true), "40");
+        // 16 + 36·5 + 6·4 + 0 and 16 + 36·1 + 0 + 1.
+        assert_eq!(Colours::TwoHundred.parameters(yellow, true), "48;5;220");
+        assert_eq!(Colours::TwoHundred.parameters(violet, false), "38;5;53");
+        for colours in [Colours::Eight, Colours::TwoHundred] {
+            let canvas = Canvas::new(&walls(2.0, 2.0), 2, 1, colours);
+            assert!(!canvas.draw(&frame(&[[0.5, 1.5, 0.0]]), 1.0)[0].contains(";2;"), "{colours:?}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Axes: how values become places, and where the ticks go.
 
-use super::number::{number, power_of_ten};
+use crate::number::{number, power_of_ten};
 
 /// How an axis is scaled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

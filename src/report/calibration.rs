@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::axis::Scale;
 use super::escape::escape;
-use super::number::{count, number, with_error};
 use super::page::{document, section};
 use super::plot::{Curve, Ink, Plot, Stroke};
 use crate::engine::report::IMPACT_BINS;
+use crate::number::{count, number, with_error};
 use crate::statistics::Estimate;
 
 /// Laws for the stochastic engines, measured in event-driven runs.

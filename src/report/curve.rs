@@ -19,6 +19,8 @@ pub(super) enum Stroke {
     Dashed,
     /// A dot at every point.
     Dots,
+    /// A ring at every point: what is measured but not to be relied on.
+    Rings,
     /// One of several lines that can be told apart without colours: by a pattern of dashes of its own. Its errors are
     /// a band.
     Patterned(usize),
@@ -58,9 +60,9 @@ impl Curve {
         Self { name: name.into(), points, errors: Vec::new(), reach: 0.0, stroke, ink }
     }
 
-    /// Ends of its band of one standard error, where it has one.
+    /// Ends of its band or bars of one standard error, where it has some.
     pub(super) fn band_ends(&self) -> impl Iterator<Item = f64> + Clone + '_ {
-        let is_banded = matches!(self.stroke, Stroke::Patterned(_));
+        let is_banded = matches!(self.stroke, Stroke::Patterned(_) | Stroke::Dots);
         let known = self.points.iter().zip(&self.errors).filter(move |_| is_banded);
         known.flat_map(|(point, error)| [point[1] - error, point[1] + error])
     }
@@ -77,8 +79,12 @@ impl Curve {
             write_errors(html, self, frame, &colour);
         }
         let points = outline(&self.points);
-        if self.stroke == Stroke::Dots {
-            let _ = writeln!(html, "<g style=\"fill:{colour}\">");
+        if let Stroke::Dots | Stroke::Rings = self.stroke {
+            let style = match self.stroke {
+                Stroke::Dots => format!("fill:{colour}"),
+                _ => format!("fill:none;stroke:{colour};stroke-width:1.2"),
+            };
+            let _ = writeln!(html, "<g style=\"{style}\">");
             for [x, y] in points.iter().filter_map(|p| frame.place(*p)) {
                 let _ = write!(html, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\"/>");
             }
@@ -100,7 +106,7 @@ impl Curve {
             Stroke::Dashed => "curve dashed",
             Stroke::Faint => "curve faint",
             Stroke::Patterned(_) => "curve patterned",
-            Stroke::Line | Stroke::Dots => "curve",
+            Stroke::Line | Stroke::Dots | Stroke::Rings => "curve",
         };
         let dashes = dashes(self.stroke);
         let _ = writeln!(html, "<path class=\"{class}\" style=\"stroke:{colour}{dashes}\" d=\"{path}\"/>");
@@ -113,6 +119,7 @@ impl Curve {
             Stroke::Line | Stroke::Faint => "line",
             Stroke::Dashed => "dashed",
             Stroke::Dots => "dots",
+            Stroke::Rings => "rings",
             Stroke::Patterned(_) => {
                 let dashes = dashes(self.stroke);
                 return format!(

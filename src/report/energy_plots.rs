@@ -2,10 +2,10 @@
 
 use super::axis::Scale;
 use super::evidence::Evidence;
-use super::number::number;
 use super::plot::{Curve, Ink, Plot, Stroke};
 use crate::comparison::laws;
 use crate::law::homogeneous_cooling::HomogeneousCooling;
+use crate::number::number;
 
 /// Haff's law for a run, with the first Sonine correction.
 #[derive(Clone, Copy, Debug, PartialEq)]

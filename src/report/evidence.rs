@@ -5,6 +5,8 @@ use serde_json::{Map, Value};
 use super::setup::Setup;
 use crate::observe::measure::{Column, Profile};
 use crate::record::contents::RunLog;
+use crate::simulation::figures::{DEGREES_OF_FREEDOM, STANDARD_ERROR, trend_of};
+use crate::statistics::Trend;
 
 /// A run as its plots see it.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +27,22 @@ impl<'a> Evidence<'a> {
 
     /// The standard error of a figure.
     pub(super) fn standard_error(&self, name: &str) -> Option<f64> {
-        self.figure(&format!("{name}_standard_error"))
+        self.figure(&format!("{name}{STANDARD_ERROR}"))
+    }
+
+    /// Degrees of freedom of that error.
+    pub(super) fn degrees_of_freedom(&self, name: &str) -> Option<f64> {
+        self.figure(&format!("{name}{DEGREES_OF_FREEDOM}"))
+    }
+
+    /// What the series of a figure does; `None` where that was not tested.
+    pub(super) fn trend(&self, name: &str) -> Option<Trend> {
+        trend_of(self.summary, name)
+    }
+
+    /// What the series of a figure does, where it is not steady.
+    pub(super) fn unsteady(&self, name: &str) -> Option<Trend> {
+        self.trend(name).filter(|trend| !trend.is_steady())
     }
 
     /// The place and the unit of a column of the series.

@@ -2,17 +2,17 @@
 //! and whether the run was long enough for them.
 
 use super::evidence::Evidence;
-use super::number::number;
 use super::setup::Setup;
 use crate::comparison::unit_of as unit_of_figure;
+use crate::number::number;
+use crate::scenario::trust;
 use crate::simulation::figures as keys;
-use crate::statistics::block_average;
 
 /// Figures that are told beside another one.
 const DETAILS: [&str; 3] = ["heap_slope_left", "heap_slope_right", "velocity_profile_r_squared"];
 
 /// Known figures in the order of their weight, and whether each is a mean over the second half of the run.
-const KNOWN: [(&str, bool); 19] = [
+const KNOWN: [(&str, bool); 20] = [
     ("heap_slope", false),
     ("heap_height", false),
     ("velocity_profile_slope", true),
@@ -32,13 +32,13 @@ const KNOWN: [(&str, bool); 19] = [
     ("mean_free_path", true),
     ("impact_c", true),
     ("rotational_energy", false),
+    ("granular_temperature", false),
 ];
 
-/// A drift shows in no fewer recordings than these in the second half.
-const FEWEST_RECORDINGS: usize = 20;
-/// What is driven forgets its start in no fewer collisions per particle than these.
+/// What is driven forgets its start in no fewer collisions per particle than these; asked where a run has no tested trend.
 const FEWEST_COLLISIONS: f64 = 20.0;
-/// A gas whose temperature changes by a larger factor over the second half is not steady.
+/// A gas whose temperature changes by a larger factor over the second half is not steady; asked where a run has no tested
+/// trend.
 const STEADY_TEMPERATURES: f64 = 1.2;
 
 /// Figures of the physics that have a value and a meaning in this run, the most telling first.
@@ -75,8 +75,12 @@ pub(super) fn unit_of(evidence: &Evidence<'_>, name: &str) -> String {
 pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
     match name {
         // The mean of something that falls by decades is a number without a use.
-        "pressure" | "collision_frequency" | "mean_free_time" => is_temperature_steady(evidence),
-        "wall_normal_stress" => !is_floor_untouched(evidence.setup),
+        "pressure" | "collision_frequency" | "mean_free_time" if evidence.trend(name).is_none() => {
+            is_temperature_steady(evidence)
+        }
+        _ if is_stress_on_untouched_floor(evidence.setup, name) => false,
+        // The mean over a floor that carries the weight and a ceiling that does not is about half of it.
+        "wall_normal_stress" => !presses_one_of_two_walls(evidence),
         _ => true,
     }
 }
@@ -84,12 +88,36 @@ pub(super) fn has_meaning(evidence: &Evidence<'_>, name: &str) -> bool {
 /// Whether a mean over the second half stands for more than itself.
 pub(super) fn is_steady(evidence: &Evidence<'_>, name: &str) -> bool {
     let is_mean = KNOWN.iter().find(|known| known.0 == name).is_none_or(|known| known.1);
-    is_mean && has_meaning(evidence, name) && doubt(evidence, name).is_none()
+    is_mean
+        && has_meaning(evidence, name)
+        && evidence.unsteady(name).is_none()
+        && doubt(evidence, name).is_none()
 }
 
 /// Whether full cells keep grains away from the floor that carries them.
 pub(super) fn is_floor_untouched(setup: &Setup) -> bool {
     setup.engine == "hsmc" && setup.has_floor()
+}
+
+/// Whether a constant force presses grains onto one of two opposite walls.
+fn presses_one_of_two_walls(evidence: &Evidence<'_>) -> bool {
+    let pulls = |axis: usize| evidence.setup.gravity.get(axis).is_some_and(|g| *g != 0.0);
+    let is_wall =
+        |axis: char, side: &str| evidence.summary.contains_key(&format!("wall_normal_stress_{axis}_{side}"));
+    let axes = ['x', 'y', 'z'].into_iter().enumerate();
+    axes.filter(|(axis, _)| pulls(*axis)).any(|(_, axis)| is_wall(axis, "lower") && is_wall(axis, "upper"))
+}
+
+/// Whether this is the normal stress on the floor.
+fn is_stress_on_the_floor(setup: &Setup, name: &str) -> bool {
+    let Some(axis) = setup.gravity_axis() else { return name == "wall_normal_stress" };
+    let side = if setup.gravity[axis] < 0.0 { "lower" } else { "upper" };
+    name == "wall_normal_stress" || name == format!("wall_normal_stress_{}_{side}", ["x", "y", "z"][axis])
+}
+
+/// Whether `name` is the stress on a floor that full cells keep grains away from.
+pub(super) fn is_stress_on_untouched_floor(setup: &Setup, name: &str) -> bool {
+    is_floor_untouched(setup) && is_stress_on_the_floor(setup, name)
 }
 
 /// Whether the temperature keeps its size over the second half of the run.
@@ -107,7 +135,7 @@ fn is_temperature_steady(evidence: &Evidence<'_>) -> bool {
 }
 
 /// Points after the middle of their times.
-pub(super) fn second_half(points: &[[f64; 2]]) -> &[[f64; 2]] {
+fn second_half(points: &[[f64; 2]]) -> &[[f64; 2]] {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return points;
     };
@@ -115,7 +143,8 @@ pub(super) fn second_half(points: &[[f64; 2]]) -> &[[f64; 2]] {
     &points[points.partition_point(|p| p[0] < middle)..]
 }
 
-/// Why a figure should not be taken for that of a steady state, in words; `None` when nothing speaks against it.
+/// Why the number of a figure should be taken with care, in words; `None` when nothing speaks against it. That its series is
+/// not steady is said in place of the number.
 pub(super) fn doubt(evidence: &Evidence<'_>, name: &str) -> Option<String> {
     if !KNOWN.iter().any(|known| known.0 == name && known.1) {
         return None;
@@ -123,53 +152,27 @@ pub(super) fn doubt(evidence: &Evidence<'_>, name: &str) -> Option<String> {
     if name == "velocity_profile_slope"
         && let Some(share) = evidence.figure("velocity_profile_r_squared").filter(|share| *share < 0.9)
     {
-        return Some(format!("not steady: the profile is no straight line, R² = {}", number(share, 2)));
+        return Some(format!("the profile is no straight line: R² = {}", number(share, 2)));
     }
     if evidence.standard_error(name).is_none() {
         return Some("the run is too short for a standard error".to_owned());
     }
     let collisions = evidence.figure("collisions_per_particle").unwrap_or(0.0);
-    if !evidence.setup.is_undriven() && collisions < FEWEST_COLLISIONS {
-        return Some(format!("too short to be steady: {} collisions per particle", number(collisions, 2)));
-    }
-    let (column, _) = evidence.column(name)?;
-    drift(second_half(&evidence.series(0, column)))
+    let is_short = !evidence.setup.is_undriven() && collisions < FEWEST_COLLISIONS;
+    (evidence.trend(name).is_none() && is_short)
+        .then(|| format!("too short to be steady: {} collisions per particle", number(collisions, 2)))
 }
 
-/// Whether the two halves of steady values differ by more than their errors and a tenth of themselves.
-fn drift(points: &[[f64; 2]]) -> Option<String> {
-    let values: Vec<f64> = points.iter().map(|p| p[1]).collect();
-    if values.len() < FEWEST_RECORDINGS {
-        return None;
-    }
-    let (early, late) = values.split_at(values.len() / 2);
-    let (early, late) = (block_average(early)?, block_average(late)?);
-    let error = early.standard_error?.hypot(late.standard_error?);
-    let change = (late.value - early.value).abs();
-    let is_drifting = change > 4.0 * error && change > 0.1 * early.value.abs();
-    is_drifting.then(|| {
-        format!(
-            "not steady: from {} to {} over its second half",
-            number(early.value, 3),
-            number(late.value, 3)
-        )
-    })
+/// What is known against the engine of this run where it concerns a figure, in a few words.
+pub(super) fn known_faults(evidence: &Evidence<'_>, name: &str) -> Vec<String> {
+    let Some(known) = &evidence.setup.known else { return Vec::new() };
+    let doubts = trust::doubts(&known.scenario).into_iter();
+    doubts.filter(|doubt| doubt.concerns(name)).map(|doubt| format!("known fault: {}", doubt.brief)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn series(value: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
-        (0..100).map(f64::from).map(|t| [t, value(t) + 0.05 * (7.3 * t).sin()]).collect()
-    }
-
-    #[test]
-    fn drifts_are_found_and_noise_is_not() {
-        assert_eq!(drift(&series(|_| 1.0)), None);
-        assert!(drift(&series(|t| 1.0 + 0.01 * t)).unwrap().contains("not steady"));
-        assert_eq!(drift(&series(|t| t)[..8]), None);
-    }
 
     #[test]
     fn the_second_half_goes_by_time() {

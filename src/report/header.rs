@@ -7,12 +7,13 @@ use serde_json::Value;
 use super::escape::escape;
 use super::evidence::Evidence;
 use super::figures;
-use super::number::{count, in_words, number, with_error};
 use super::other_plots::capital;
 use super::reference::{Reference, references};
 use super::setup::Setup;
+use crate::number::{NOT_STEADY, count, in_words, number, with_error};
 use crate::observe::measure::Dimension;
 use crate::record::summary::failure;
+use crate::scenario::trust;
 
 /// Title, sentence, figures.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {
@@ -28,6 +29,7 @@ pub(super) fn html(evidence: &Evidence<'_>) -> String {
     if evidence.summary.get("interrupted") == Some(&Value::Bool(true)) {
         html.push_str("<p class=\"warning\">This run was interrupted before its end.</p>\n");
     }
+    html.push_str(&known_faults(evidence));
     let references = references(evidence);
     let mut cards: String = references
         .iter()
@@ -58,6 +60,18 @@ fn failure_words(evidence: &Evidence<'_>) -> String {
         escape(&when),
         escape(why).replace('\n', "<br>"),
     )
+}
+
+/// Where the engine is known to be wrong, before the figures that it concerns.
+fn known_faults(evidence: &Evidence<'_>) -> String {
+    let Some(known) = &evidence.setup.known else { return String::new() };
+    let doubts = trust::doubts(&known.scenario).into_iter().filter(|doubt| doubt.is_warning);
+    doubts
+        .map(|doubt| {
+            let sentence = format!("Known of this engine here: {}.", doubt.sentence);
+            format!("<p class=\"warning\">{}</p>\n", escape(&sentence))
+        })
+        .collect()
 }
 
 /// What ran, for how long, in one sentence.
@@ -129,9 +143,15 @@ fn card(evidence: &Evidence<'_>, name: &str, references: &[Reference]) -> String
     notes.extend(
         references.iter().find(|r| r.figure == name).map(|r| format!("expected {}", r.expected.text())),
     );
+    notes.extend(figures::known_faults(evidence, name));
+    let unit = figures::unit_of(evidence, name);
+    if let Some(trend) = evidence.unsteady(name) {
+        let told = format!("{}, mean {} {unit}", trend.name(), number(value, 3));
+        return entry(&in_words(name), NOT_STEADY, "", &notes, Some(told.trim_end()));
+    }
     let text = with_error(value, evidence.standard_error(name));
     let doubt = figures::doubt(evidence, name);
-    entry(&in_words(name), &text, &figures::unit_of(evidence, name), &notes, doubt.as_deref())
+    entry(&in_words(name), &text, &unit, &notes, doubt.as_deref())
 }
 
 /// t₀ is no figure of the summary: it is fitted here.
@@ -166,7 +186,8 @@ fn facts(evidence: &Evidence<'_>) -> String {
         ("simulated_time", "simulated time", evidence.setup.named(2)),
         ("resumed_at", "resumed at", evidence.setup.named(2)),
         ("collisions_per_particle", "collisions per particle", String::new()),
-        ("temperature", "granular temperature at the end", energy),
+        ("granular_temperature", "granular temperature at the end, about the local flow", energy.clone()),
+        ("temperature", "temperature at the end, about the mean of all grains", energy),
         ("wall_seconds", "computing time", "s".to_owned()),
     ];
     let entries = facts.iter().filter_map(|(key, title, unit)| {
@@ -182,5 +203,5 @@ fn entry(title: &str, value: &str, unit: &str, notes: &[String], doubt: Option<&
     let unit = if unit.is_empty() { String::new() } else { format!(" <small>{}</small>", escape(unit)) };
     let notes: String = notes.iter().map(|note| format!("<dd>{}</dd>", escape(note))).collect();
     let doubt = doubt.map_or_else(String::new, |text| format!("<dd class=\"doubt\">{}</dd>", escape(text)));
-    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{notes}{doubt}</div>\n", escape(title), escape(value))
+    format!("<div><dt>{}</dt><dd>{}{unit}</dd>{doubt}{notes}</div>\n", escape(title), escape(value))
 }

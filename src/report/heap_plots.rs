@@ -2,8 +2,8 @@
 
 use super::evidence::{Evidence, points, spread, values};
 use super::fit::{Line, line, two_terms};
-use super::number::number;
 use super::plot::{Curve, Ink, Plot, Stroke};
+use crate::number::number;
 use crate::observe::measure::{Dimension, Profile};
 
 /// Name of the profile of every recording.

@@ -13,7 +13,6 @@ mod figures;
 mod fit;
 mod header;
 mod heap_plots;
-mod number;
 mod other_plots;
 mod page;
 mod parameters;
@@ -28,6 +27,7 @@ pub(crate) mod setup;
 mod shear_plots;
 mod sweep;
 mod sweep_model;
+mod unit;
 mod wave_plots;
 
 use serde_json::{Map, Value};
@@ -52,11 +52,6 @@ pub fn render(log: &RunLog, summary: &Map<String, Value>) -> String {
 /// `sweep.html`: figures of many runs against what was varied, one page that needs no network.
 pub fn render_sweep(sweep: &SweepReport) -> String {
     sweep::page(sweep)
-}
-
-/// `value` with its standard error, to the digits that mean something.
-pub fn with_error(value: f64, standard_error: Option<f64>) -> String {
-    number::with_error(value, standard_error)
 }
 
 /// `comparison.html`: several engines side by side, one page that needs no network. Verdicts first, then costs, curves

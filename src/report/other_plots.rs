@@ -3,9 +3,9 @@
 use super::axis::Scale;
 use super::energy_plots;
 use super::evidence::{Evidence, points, spread};
-use super::number::{in_words, number, with_error};
 use super::plot::{Curve, Ink, Plot, Stroke};
 use super::{figures, heap_plots, shear_plots, wave_plots};
+use crate::number::{in_words, number, with_error};
 use crate::observe::measure::Profile;
 
 /// Profiles that have plots of their own.
@@ -40,14 +40,18 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
     if let Some(mean) = evidence.figure(&described.name).filter(|_| error.is_some() && is_steady) {
         curves[0].name = "at every recording".to_owned();
         let steady = [0.5 * (ends[0] + ends[1]), ends[1]].map(|t| [t, mean]).to_vec();
-        let name = format!("steady mean {}", with_error(mean, error));
+        let name = if evidence.trend(&described.name).is_some() { "steady mean" } else { "mean" };
+        let name = format!("{name} {}", with_error(mean, error));
         curves.push(Curve::new(name, steady, Stroke::Dashed, Ink::Text));
     }
-    let is_floor = described.name == "wall_normal_stress" && figures::is_floor_untouched(evidence.setup);
-    let caption = if is_floor {
-        "Not the weight of the packing: in HSMC a grain that full cells keep back does not touch the floor."
-    } else {
-        ""
+    let is_floor = figures::is_stress_on_untouched_floor(evidence.setup, &described.name);
+    let caption = match evidence.unsteady(&described.name) {
+        _ if is_floor => {
+            "Not the weight of the packing: in HSMC a grain that full cells keep back does not touch the floor."
+                .to_owned()
+        }
+        Some(trend) => format!("Not steady: {} over the stretch of the run that means are made of.", trend.name()),
+        None => String::new(),
     };
     let scale =
         if is_energy_like(&described.name) { Scale::of_energy(&curves[0].points) } else { Scale::Linear };
@@ -58,7 +62,7 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
         x_scale: energy_plots::scale_of_times(&curves[0].points),
         y_scale: scale,
         curves,
-        caption: caption.to_owned(),
+        caption,
         ..Plot::default()
     };
     Some(plot.focused())

@@ -6,7 +6,6 @@ use serde_json::{Map, Value};
 
 use super::escape::escape;
 use super::evidence::Evidence;
-use super::number::{count, number};
 use super::plot::{Plot, colour_bar};
 use super::scene::Scene;
 use super::setup::Setup;
@@ -16,6 +15,7 @@ use super::{
     wave_plots,
 };
 use crate::comparison::laws;
+use crate::number::{count, number};
 use crate::observe::measure::Dimension;
 use crate::record::contents::{Frame, RunLog};
 
@@ -167,14 +167,14 @@ fn references(evidence: &Evidence<'_>) -> String {
     for row in &rows {
         let class = match row.agreement() {
             reference::Agreement::Holds => "holds",
-            reference::Agreement::Borderline => "borderline",
+            reference::Agreement::Borderline | reference::Agreement::NotSteady => "borderline",
             reference::Agreement::Differs => "differs",
         };
         let _ = writeln!(
             html,
             "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"{class}\"><b>{}</b></td>\
              <td class=\"source\">{}</td></tr>",
-            escape(&super::number::in_words(&row.figure)),
+            escape(&crate::number::in_words(&row.figure)),
             escape(&row.measured_text()),
             escape(&row.expected.text()),
             escape(&row.words()),

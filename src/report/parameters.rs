@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::escape::escape;
 use super::evidence::Evidence;
 use super::figures;
-use super::number::{count, in_words, number};
+use crate::number::{count, in_words, number};
 
 /// Folded tables and the text of the scenario.
 pub(super) fn html(evidence: &Evidence<'_>) -> String {

@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::colour::ColourMap;
 use super::escape::{escape, escape_json};
-use super::number::number;
 use super::scene::{Scene, speed};
 use super::setup::Setup;
+use crate::number::number;
 use crate::record::contents::Frame;
 use crate::scenario::kinds::Kinds;
 

@@ -6,7 +6,7 @@ use super::axis::{Axis, Scale, Tick};
 use super::colour::ColourMap;
 pub(super) use super::curve::{Curve, Ink, Stroke};
 use super::escape::escape;
-use super::number::number;
+use crate::number::number;
 
 /// A coloured field that fills the frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,7 +176,7 @@ impl Plot {
         let given =
             |axis: usize| self.ranges[axis].map(|[lower, upper]| Axis { lower, upper, logarithmic: false });
         // Dots at the very end would be cut.
-        let has_dots = self.curves.iter().any(|curve| curve.stroke == Stroke::Dots);
+        let has_dots = self.curves.iter().any(|curve| matches!(curve.stroke, Stroke::Dots | Stroke::Rings));
         let x = given(0).unwrap_or_else(|| Axis::over(values(0), self.x_scale, !has_dots));
         let y = given(1).unwrap_or_else(|| Axis::over(values(1), self.y_scale, exact));
         let outer = if self.wide { 1000.0 } else { 490.0 };

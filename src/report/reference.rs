@@ -2,9 +2,11 @@
 
 use super::energy_plots::Haff;
 use super::evidence::Evidence;
-use super::number::{number, with_error};
 use crate::comparison::laws;
+use crate::number::{NOT_STEADY, figure_text, number};
 use crate::scenario::model::EngineKind;
+use crate::statistics::Trend;
+use crate::statistics::student::threshold;
 
 /// What a figure should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +26,12 @@ pub(super) enum Expected {
 pub(super) enum Agreement {
     /// Within the reference.
     Holds,
-    /// Outside, by less than two standard errors.
+    /// Outside, but within the interval that the standard error leaves.
     Borderline,
     /// Outside.
     Differs,
+    /// The figure is not steady: its mean is compared with nothing.
+    NotSteady,
 }
 
 /// A figure beside its reference.
@@ -39,6 +43,10 @@ pub(super) struct Reference {
     pub measured: f64,
     /// Its standard error.
     pub standard_error: Option<f64>,
+    /// Degrees of freedom of that error; `None` where it is taken as known.
+    pub degrees_of_freedom: Option<f64>,
+    /// What its series does, where that was tested.
+    pub trend: Option<Trend>,
     /// What it should be.
     pub expected: Expected,
     /// Where that is from.
@@ -67,14 +75,25 @@ impl Expected {
     }
 }
 
+/// Degrees of freedom of an error that is taken as known: so many that Student’s t is normal to six digits.
+const KNOWN: f64 = 1e6;
+/// Probability that a figure lies farther from its true value than its interval reaches.
+const OUTSIDE: f64 = 0.05;
+
 impl Reference {
+    /// How far the interval of 95 % reaches by Student's t [standard errors].
+    fn reach(&self) -> f64 {
+        threshold(OUTSIDE, self.degrees_of_freedom.unwrap_or(KNOWN), 1)
+    }
+
     /// How the figure stands to its reference.
     pub(super) fn agreement(&self) -> Agreement {
         let [lower, upper] = self.expected.range();
         let distance = (lower - self.measured).max(self.measured - upper);
         match self.standard_error {
+            _ if self.trend.is_some_and(|trend| !trend.is_steady()) => Agreement::NotSteady,
             _ if distance <= 0.0 => Agreement::Holds,
-            Some(error) if distance <= 2.0 * error => Agreement::Borderline,
+            Some(error) if distance <= self.reach() * error => Agreement::Borderline,
             _ => Agreement::Differs,
         }
     }
@@ -90,7 +109,10 @@ impl Reference {
                 }
                 _ => "agrees".to_owned(),
             },
-            (Agreement::Borderline, _) => "agrees within two standard errors".to_owned(),
+            (Agreement::NotSteady, _) => {
+                format!("no verdict: {NOT_STEADY}")
+            }
+            (Agreement::Borderline, _) => "agrees within its 95 % interval".to_owned(),
             (Agreement::Differs, Some(error)) if error > 0.0 => {
                 format!("differs, {} standard errors outside", number(distance / error, 2))
             }
@@ -105,33 +127,9 @@ impl Reference {
 
     /// The measured value as text.
     pub(super) fn measured_text(&self) -> String {
-        with_error(self.measured, self.standard_error)
+        figure_text(self.measured, self.standard_error, self.trend)
     }
 }
-
-/// Slopes of heaps of one size as this program makes them.
-struct Heaps {
-    /// How many were made.
-    heaps: u32,
-    /// Their mean slope.
-    mean: f64,
-    /// Standard deviation of a single one.
-    scatter: f64,
-}
-
-impl Heaps {
-    /// Where one more is expected: three standard deviations of its difference from the mean of the others.
-    fn range(&self) -> [f64; 2] {
-        let error = 3.0 * self.scatter * (1.0 + 1.0 / f64::from(self.heaps)).sqrt();
-        [self.mean - error, self.mean + error]
-    }
-}
-
-/// Grains of a heap of the scenario `heap` at r = 0.9, and its slopes (docs/sweeps.md, `tests/physics_scenarios`).
-const HEAPS: [(f64, Heaps); 2] = [
-    (1500.0, Heaps { heaps: 7, mean: 0.610, scatter: 0.022 }),
-    (3000.0, Heaps { heaps: 4, mean: 0.681, scatter: 0.016 }),
-];
 
 /// Every figure of the run that something is known about.
 pub(super) fn references(evidence: &Evidence<'_>) -> Vec<Reference> {
@@ -142,7 +140,6 @@ pub(super) fn references(evidence: &Evidence<'_>) -> Vec<Reference> {
         velocity_profile_slope(evidence),
         bagnold_stress(evidence),
         wave_contrast(evidence),
-        heap_slope(evidence),
         sedimentation(evidence),
     ]
     .into_iter()
@@ -151,8 +148,8 @@ pub(super) fn references(evidence: &Evidence<'_>) -> Vec<Reference> {
 }
 
 /// What the references are.
-pub(super) const REMARK: &str = "References are closed forms, published figures, trials of the same algorithm and what this program \
-    gave before, as each row says; trials and figures hold for the parameters named there.";
+pub(super) const REMARK: &str = "References are closed forms, published figures and an independent trial implementation of the same \
+    algorithm, as each row says; trials and figures hold for the parameters named there. No run is held against earlier results of this program.";
 
 impl Evidence<'_> {
     fn compare(&self, figure: &str, factor: f64, expected: Expected, source: &str) -> Option<Reference> {
@@ -160,6 +157,8 @@ impl Evidence<'_> {
             figure: figure.to_owned(),
             measured: self.figure(figure)? * factor,
             standard_error: self.standard_error(figure).map(|error| error * factor),
+            degrees_of_freedom: self.degrees_of_freedom(figure),
+            trend: self.trend(figure),
             expected,
             source: source.to_owned(),
         })
@@ -180,6 +179,8 @@ fn cooling_time(evidence: &Evidence<'_>) -> Option<Reference> {
         figure: "cooling_time t₀ (fit up to 2 t₀)".to_owned(),
         measured,
         standard_error: None,
+        degrees_of_freedom: None,
+        trend: None,
         expected: Expected::Near(haff.time(), 0.05),
         source: "Haff 1983; Sonine correction of van Noije and Ernst 1998; Enskog factor of Henderson 1975 (2D), Carnahan and Starling 1969 (3D)".to_owned(),
     })
@@ -250,31 +251,6 @@ fn wave_contrast(evidence: &Evidence<'_>) -> Option<Reference> {
     evidence.compare("contrast_over_poisson", 1.0, expected, source)
 }
 
-/// What this program itself made of the scenario `heap`: a change of it shows, an error that was always there does not.
-fn heap_slope(evidence: &Evidence<'_>) -> Option<Reference> {
-    let setup = evidence.setup;
-    let known = setup.known.as_ref()?;
-    let [count, rate] = known.source?;
-    let is_known = known.runs_with(EngineKind::Hsmc)
-        && known.is_plain(0.9)
-        && setup.dimension == 2
-        && known.has_cells_of(2.0)
-        && (rate - 0.5).abs() < 1e-9;
-    let (_, own) = HEAPS.iter().find(|(grains, _)| is_known && (count - grains).abs() < 0.5)?;
-    let [lower, upper] = own.range();
-    let source = format!(
-        "Regression: {} heaps of {count} grains that this program made gave {} on average with a scatter of {}; a single one \
-         is expected within three standard deviations, {} … {}. It is no figure of the literature: Müller 2001, fig. 3.27 \
-         (N = 30 500), shows slopes without numbers, and exact dynamics of smooth disks makes flatter heaps",
-        own.heaps,
-        number(own.mean, 3),
-        number(own.scatter, 2),
-        number(lower, 3),
-        number(upper, 3),
-    );
-    evidence.compare("heap_slope", 1.0, Expected::Between(lower, upper), &source)
-}
-
 /// A hundred grains of 1 mm in a box of 2 × 4 cm.
 fn sedimentation(evidence: &Evidence<'_>) -> Option<Reference> {
     let setup = evidence.setup;
@@ -298,7 +274,15 @@ mod tests {
     use super::*;
 
     fn row(measured: f64, standard_error: Option<f64>, expected: Expected) -> Reference {
-        Reference { figure: String::new(), measured, standard_error, expected, source: String::new() }
+        Reference {
+            figure: String::new(),
+            measured,
+            standard_error,
+            degrees_of_freedom: None,
+            trend: None,
+            expected,
+            source: String::new(),
+        }
     }
 
     #[test]
@@ -311,5 +295,22 @@ mod tests {
         assert_eq!(row(f64::NAN, None, range).agreement(), Agreement::Differs);
         assert_eq!(row(-2.1, None, Expected::Near(-2.0, 0.1)).agreement(), Agreement::Holds);
         assert!(row(0.8, Some(0.01), range).words().contains("12 standard errors"));
+    }
+
+    #[test]
+    fn few_degrees_of_freedom_widen_the_interval_and_a_drift_has_none() {
+        // 2.5 errors outside; 95 % by Student's t: 1.96 of a known error, 2.78 of four degrees of freedom.
+        let at = |freedom: Option<f64>| Reference {
+            degrees_of_freedom: freedom,
+            ..row(0.705, Some(0.01), Expected::Between(0.45, 0.68))
+        };
+        assert_eq!(at(None).agreement(), Agreement::Differs);
+        assert_eq!(at(Some(4.0)).agreement(), Agreement::Borderline);
+        assert!((at(None).reach() - 1.96).abs() < 1e-3 && (at(Some(4.0)).reach() - 2.776).abs() < 1e-3);
+        let rising =
+            Reference { trend: Some(Trend::Rising), ..row(0.5, Some(0.01), Expected::Between(0.45, 0.68)) };
+        assert_eq!(rising.agreement(), Agreement::NotSteady);
+        assert_eq!(rising.measured_text(), "not steady (rising, mean 0.5)");
+        assert!(!rising.words().contains("agrees"));
     }
 }

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use super::number::unit;
 use super::plain_text::PlainText;
+use super::unit::unit;
 use crate::comparison::laws;
 use crate::law::restitution::{Constant, RestitutionLaw};
 use crate::observe::layout;
@@ -192,7 +192,7 @@ impl Setup {
             known: Some(Known::of(any(scenario.clone()))),
             ..Self::nothing()
         };
-        setup.see_walls(&Walls::new(&scenario.boundary, V::ZERO, scenario.size));
+        setup.see_walls(&scenario.walls());
         setup
     }
 
@@ -291,7 +291,7 @@ impl Setup {
 
     /// "name [unit]" of a column.
     pub(crate) fn label(&self, column: &Column) -> String {
-        self.with_unit(&super::number::in_words(&column.name), column.unit)
+        self.with_unit(&crate::number::in_words(&column.name), column.unit)
     }
 
     /// "name [unit]".

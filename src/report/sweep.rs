@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::axis::Scale;
 use super::escape::escape;
-use super::number::{in_words, number, with_error};
 use super::page::{document, section};
 use super::plot::{Curve, Ink, Plot, Stroke};
-use super::sweep_model::{FigureCurve, PowerLaw, SweepFigure, SweepReport, spans_a_decade};
+use super::sweep_model::{FigureCurve, MeanPoint, PowerLaw, SweepFigure, SweepReport, spans_a_decade};
+use crate::number::{NOT_STEADY, in_words, number, with_error};
 
 /// More lines than these are told apart by an ordered scale of colours.
 const MOST_COLOURS: usize = 6;
@@ -77,19 +77,33 @@ fn plot(sweep: &SweepReport, figure: &SweepFigure) -> Plot {
             curves.push(Curve::new("", places.clone(), Stroke::Faint, ink));
         }
         let name = if curve.name.is_empty() { in_words(&figure.name) } else { curve.name.clone() };
-        let errors = curve.points.iter().map(|point| point.standard_error.unwrap_or(0.0)).collect();
-        curves.push(Curve { errors, ..Curve::new(name, places, Stroke::Dots, ink) });
+        curves.extend(measured(curve, name, ink));
     }
     Plot {
         title: in_words(&figure.name),
         caption: caption(sweep, figure),
         x_label: sweep.abscissa.name.clone(),
-        y_label: in_words(&figure.name),
+        y_label: figure.labelled(&in_words(&figure.name)),
         x_scale,
         y_scale,
         curves,
         ..Plot::default()
     }
+}
+
+/// Its steady points as dots with their errors; the others as rings, which have none.
+fn measured(curve: &FigureCurve, name: String, ink: Ink) -> Vec<Curve> {
+    let of = |is_steady: bool| curve.points.iter().filter(move |point| point.is_steady() == is_steady);
+    let places = |is_steady: bool| of(is_steady).map(|point| [point.x, point.value]).collect::<Vec<_>>();
+    let errors = of(true).map(|point| point.standard_error.unwrap_or(0.0)).collect();
+    let mut curves = Vec::new();
+    if curve.not_steady() < curve.points.len() {
+        curves.push(Curve { errors, ..Curve::new(name.clone(), places(true), Stroke::Dots, ink) });
+    }
+    if curve.not_steady() > 0 {
+        curves.push(Curve::new(format!("{name}, {NOT_STEADY}"), places(false), Stroke::Rings, ink));
+    }
+    curves
 }
 
 fn fit_name(curve: &FigureCurve, law: &PowerLaw) -> String {
@@ -112,9 +126,15 @@ fn caption(sweep: &SweepReport, figure: &SweepFigure) -> String {
     let mut sentences = Vec::new();
     if points().any(|point| point.standard_error.is_some()) {
         sentences.push(match runs {
-            0 | 1 => "Bars: one standard error, from blocks in time.".to_owned(),
+            0 | 1 => "Bars: one standard error, as each run states it.".to_owned(),
             runs => format!("Means of up to {runs} runs; bars: one standard error, from their scatter."),
         });
+    }
+    match points().filter(|point| !point.is_steady()).count() {
+        0 => {}
+        1 => sentences.push("The ring is a mean of runs that are not steady; no fit takes it.".to_owned()),
+        many => sentences
+            .push(format!("The {many} rings are means of runs that are not steady; no fit takes them.")),
     }
     if !sweep.abscissa.is_numeric {
         let names = sweep.abscissa.values.iter().zip(1..).map(|(value, k)| format!("{k} = {value}"));
@@ -137,7 +157,7 @@ fn caption(sweep: &SweepReport, figure: &SweepFigure) -> String {
 fn table(sweep: &SweepReport, figure: &SweepFigure) -> String {
     let mut html = format!(
         "<details><summary>{}</summary>\n<div class=\"references\"><table>\n<thead><tr><th>{}</th>",
-        escape(&in_words(&figure.name)),
+        escape(&figure.labelled(&in_words(&figure.name))),
         escape(&sweep.abscissa.name)
     );
     for curve in &figure.curves {
@@ -149,7 +169,7 @@ fn table(sweep: &SweepReport, figure: &SweepFigure) -> String {
         let _ = write!(html, "<tr><td class=\"number\">{}</td>", escape(value));
         for curve in &figure.curves {
             let point = curve.points.iter().find(|point| point.x == *place);
-            let text = point.map_or("–".to_owned(), |point| with_error(point.value, point.standard_error));
+            let text = point.map_or("–".to_owned(), MeanPoint::text);
             let _ = write!(html, "<td class=\"number\">{}</td>", escape(&text));
         }
         html.push_str("</tr>\n");

@@ -1,5 +1,8 @@
 //! What a sweep came to: the input of its page, of its JSON and of the last words on the terminal.
 
+use crate::number::figure_text;
+use crate::statistics::Trend;
+
 /// All that a page of a sweep shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepReport {
@@ -41,6 +44,8 @@ pub struct Abscissa {
 pub struct SweepFigure {
     /// Its name in the summary.
     pub name: String,
+    /// Its unit, as `kg/(m·s^2)`; empty for a pure number.
+    pub unit: String,
     /// One for every combination of the other varied keys and engines.
     pub curves: Vec<FigureCurve>,
 }
@@ -52,7 +57,7 @@ pub struct FigureCurve {
     pub name: String,
     /// Points that have a value, in the order of the abscissa.
     pub points: Vec<MeanPoint>,
-    /// The power law through them, where both are positive and the abscissa spans a decade.
+    /// The power law through those that are steady, where both are positive and the abscissa spans a decade.
     pub power_law: Option<PowerLaw>,
 }
 
@@ -63,8 +68,10 @@ pub struct MeanPoint {
     pub x: f64,
     /// The mean.
     pub value: f64,
-    /// Its standard error: from the scatter of replicas, of one run alone from its blocks.
+    /// Its standard error: from the scatter of replicas, of one run alone what that states.
     pub standard_error: Option<f64>,
+    /// Whether its series is steady in the runs; `None` where none of them tested it.
+    pub trend: Option<Trend>,
     /// Runs that it is made of.
     pub runs: usize,
 }
@@ -95,6 +102,32 @@ pub struct SweepCase {
     pub error: String,
     /// Whether its folder has a page.
     pub has_page: bool,
+}
+
+impl MeanPoint {
+    /// Whether no run says that it is not steady.
+    pub fn is_steady(&self) -> bool {
+        self.trend.is_none_or(Trend::is_steady)
+    }
+
+    /// Its value and error as text, or that it is not steady.
+    pub fn text(&self) -> String {
+        figure_text(self.value, self.standard_error, self.trend)
+    }
+}
+
+impl SweepFigure {
+    /// `title` with the unit in brackets.
+    pub fn labelled(&self, title: &str) -> String {
+        if self.unit.is_empty() { title.to_owned() } else { format!("{title} [{}]", self.unit) }
+    }
+}
+
+impl FigureCurve {
+    /// How many of its points are not steady: fits leave them out.
+    pub fn not_steady(&self) -> usize {
+        self.points.iter().filter(|point| !point.is_steady()).count()
+    }
 }
 
 impl Abscissa {

@@ -3,9 +3,9 @@
 use super::axis::Scale;
 use super::colour::ColourMap;
 use super::evidence::{Evidence, points, spread, values};
-use super::number::{number, with_error};
 use super::plot::{Curve, Field, Ink, Plot, Stroke};
 use super::raster::Raster;
+use crate::number::{figure_text, number};
 use crate::observe::measure::Profile;
 
 /// Name of the profile of every recording.
@@ -150,7 +150,10 @@ fn spectrum(evidence: &Evidence<'_>) -> Option<Plot> {
         ..Plot::default()
     };
     if let Some(slope) = evidence.figure("spectrum_slope") {
-        let name = format!("slope {}", with_error(slope, evidence.standard_error("spectrum_slope")));
+        let name = format!(
+            "slope {}",
+            figure_text(slope, evidence.standard_error("spectrum_slope"), evidence.trend("spectrum_slope"))
+        );
         plot.curves.push(Curve::new(name, power_law(evidence, &power, slope), Stroke::Dashed, Ink::Text));
         plot.caption =
             "Dashed: the straight line fitted for f = 0.3 … 5 √(g/d). The slope depends on the band."

@@ -4,6 +4,7 @@ pub mod beginning;
 pub mod folder;
 mod last_good;
 mod looks;
+mod older;
 mod recorder;
 mod rerun;
 pub mod resume;
@@ -29,7 +30,7 @@ use crate::record::summary::SUMMARY;
 use crate::record::{LOG, log_at};
 use crate::report;
 use crate::scenario::initial::{self, InitialError};
-use crate::scenario::model::{AnyScenario, InitialPositions, Scenario};
+use crate::scenario::model::{AnyScenario, InitialPositions, Scenario, Units};
 use crate::simulation::{Simulation, SimulationError};
 use crate::space::Vector;
 use crate::stopwatch::Stopwatch;
@@ -39,6 +40,13 @@ use summary::Ending;
 
 /// Raised whenever a release changes the bits of a trajectory.
 pub const NUMERICS: u32 = 2;
+
+/// Raised whenever a release changes what is observed beside the grains, sums and measures, and no trajectory. Verification
+/// compares these between logs of one number alone. Logs that do not say it are of number 1; since 2 a wall is given what it
+/// carries while grains rest on it.
+pub const OBSERVATION: u32 = 2;
+/// Where a log says it.
+pub(crate) const OBSERVATION_KEY: &str = "observation";
 
 /// Why a run could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]
@@ -99,12 +107,12 @@ fn last_state_words(state: Option<f64>) -> String {
 
 /// How a run that `source` has ended goes on from the last `state` of its `log`, where another cure of collapse lets it.
 fn continuation(source: &SimulationError, log: &Path, state: Option<f64>) -> Option<String> {
-    let SimulationError::Engine(EngineError::Collapse { cure, value, .. }) = source else { return None };
+    let SimulationError::Engine(EngineError::Collapse { remedy, .. }) = source else { return None };
     state?;
     let folder = log.parent().unwrap_or(Path::new("."));
     Some(format!(
         "with a cure it goes on from that state:\n  grainflow run --resume '{}' --set \
-         'engine.event_driven.collapse={{ {cure} = {value:.1e} }}'",
+         'engine.event_driven.collapse={remedy}'",
         folder.display()
     ))
 }
@@ -147,6 +155,8 @@ pub struct Outcome {
     pub folder: PathBuf,
     /// The summary.
     pub summary: Map<String, Value>,
+    /// Names of its units.
+    pub units: Units,
     /// Whether somebody stopped the run before its end.
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
@@ -222,9 +232,11 @@ impl<V: Vector> Run<'_, V> {
         let recorded = recorder.finish(&mut simulation)?;
         let summary = write_files(&folder, &mut simulation, ending, &watch, &recorded)?;
         let folder = folder.settle()?;
+        let units = simulation.scenario().units.clone();
         Ok(Outcome {
             folder,
             summary,
+            units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
         })

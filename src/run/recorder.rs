@@ -4,24 +4,24 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use super::NUMERICS;
 use super::last_good::last_good;
 use super::looks::Looks;
 use super::shown::Shown;
 use super::timetable::Timetable;
+use super::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use crate::engine::Horizon;
 use crate::matter::state_hash::state_hash;
 use crate::observe::field::{Field, field};
 use crate::observe::measure::{Column, Figure, Place, Profile};
 use crate::record::RECOVERED_KEY;
-use crate::record::contents::{EarlierPart, Walls};
+use crate::record::contents::EarlierPart;
 use crate::record::continuation::copy_before;
 use crate::record::error::LogError;
 use crate::record::frame::frame;
 use crate::record::history::History;
 use crate::record::time_scale::time_scale;
 use crate::record::writer::{LogHeader, LogWriter, Recording};
-use crate::scenario::model::{InitialPositions, Scenario, Spacing};
+use crate::scenario::model::{InitialPositions, Scenario};
 use crate::simulation::Simulation;
 use crate::space::Vector;
 
@@ -86,6 +86,11 @@ impl Recorder {
             let lost = origin.history.value(RECOVERED_KEY).to_owned();
             header.metadata.insert(RECOVERED_KEY.to_owned(), lost);
         }
+        // The sums of a run go on as they began.
+        match origin.history.value(OBSERVATION_KEY) {
+            "" => header.metadata.remove(OBSERVATION_KEY),
+            number => header.metadata.insert(OBSERVATION_KEY.to_owned(), number.to_owned()),
+        };
         let mut writer = LogWriter::create(path, &header)?;
         let copied = copy_before(origin.log, origin.state, &mut writer, &looks.columns)?;
         let is_here = copied.series.last().is_some_and(|row| row[0] == simulation.gas().time())
@@ -142,7 +147,7 @@ impl Recorder {
         if self.last_recorded != Some(simulation.observation().1.place()) {
             self.record(simulation, Shown::ALL)?;
         }
-        let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
+        let from = simulation.steady_from();
         let (measures, snapshot) = simulation.observation();
         for (measure, &stored) in measures.iter().zip(&self.looks.stored) {
             let (profiles, figures) = measure.conclusion(&snapshot, from);
@@ -235,24 +240,17 @@ fn header<V: Vector>(scenario: &Scenario<V>, looks: &Looks) -> LogHeader {
         scenario: scenario.source_text.clone(),
         earlier: Vec::new(),
         columns: looks.columns.clone(),
-        walls: Some(Walls::new(&scenario.boundary, V::ZERO, scenario.size)),
+        walls: Some(scenario.walls()),
         fields: (scenario.fields().collect(), V::DIMENSION),
         start: 0.0,
         time_scale: expected_time_scale(scenario),
     }
 }
 
-/// Ticks per time from what the scenario says of its length and of the pauses between recordings.
+/// Ticks per time from what can be told before the run of its length and of the pauses between recordings.
 fn expected_time_scale<V: Vector>(scenario: &Scenario<V>) -> u64 {
-    let poured = scenario.source.as_ref().map_or(0.0, |source| f64::from(source.count) / source.rate);
-    let duration = scenario.run.time.or(scenario.run.rest.map(|rest| rest + poured));
-    let interval = match scenario.record.spacing {
-        Spacing::Every(interval) => Some(interval),
-        Spacing::Frames(number) => duration.map(|duration| duration / f64::from(number.max(1))),
-        Spacing::LogFrames(_) => duration.map(|duration| duration * 1e-3),
-        Spacing::Ends => duration,
-    };
-    time_scale(duration.unwrap_or(f64::INFINITY), interval.unwrap_or(0.0))
+    let duration = scenario.expected_duration().unwrap_or(f64::INFINITY);
+    time_scale(duration, scenario.expected_pause().unwrap_or(0.0))
 }
 
 fn metadata<V: Vector>(scenario: &Scenario<V>) -> BTreeMap<String, String> {
@@ -264,6 +262,7 @@ fn metadata<V: Vector>(scenario: &Scenario<V>) -> BTreeMap<String, String> {
         ("seed", scenario.seed.to_string()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("numerics", NUMERICS.to_string()),
+        (OBSERVATION_KEY, OBSERVATION.to_string()),
         ("unit_length", scenario.units.length.clone()),
         ("unit_mass", scenario.units.mass.clone()),
         ("unit_time", scenario.units.time.clone()),

@@ -57,7 +57,7 @@ impl<'s, V: Vector> Running<'s, V> {
     pub(super) fn recording(&mut self) -> Vec<f64> {
         let Running { simulation, timetable, looks } = self;
         let mut shown = Shown::ALL;
-        if timetable.wants_recording(simulation) {
+        if timetable.is_recording_due(simulation) {
             shown = Shown::at(timetable.due(simulation), &simulation.scenario().record);
             timetable.recorded(simulation);
         }
@@ -151,12 +151,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
                 return Reached::Interrupted;
             }
             // What is due but is not in the log is passed over.
-            if timetable.wants_recording(simulation) {
-                timetable.recorded(simulation);
-            }
-            if timetable.wants_state(simulation) {
-                timetable.state_saved(simulation);
-            }
+            timetable.pass_over(simulation);
             let horizon = timetable.horizon(simulation).min(there);
             if let Err(error) = simulation.advance(&mut NoLaps, horizon) {
                 return Reached::Not(format!("the re-run ends at t = {now:?}, and the log goes on: {error}"));
@@ -168,7 +163,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
     pub(super) fn is_interruption(&self, state: &SavedState<'static, V>) -> Result<bool, Misfit> {
         let Running { simulation, timetable, .. } = self.now();
         let there = Simulation::resume(simulation.scenario(), state.clone())?;
-        Ok(there.end_reason().is_none() && !timetable.wants_state(&there))
+        Ok(there.end_reason().is_none() && !timetable.is_state_due(&there))
     }
 
     /// Takes the recording that is due: names of the columns, and their values.
@@ -198,7 +193,7 @@ impl<'s, V: Vector> Rerun<'s, V> {
         }
         let Running { simulation, timetable, .. } = self.now_mut();
         let verdict = judge(&simulation.saved_state(timetable.recordings, timetable.saved));
-        if timetable.wants_state(simulation) {
+        if timetable.is_state_due(simulation) {
             timetable.state_saved(simulation);
         }
         Ok(verdict)

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::folder::RunFolder;
 use super::recorder::{Origin, Recorder};
 use super::timetable::Timetable;
-use super::{Listener, NUMERICS, Outcome, Run, RunError, log_of, run};
+use super::{Listener, NUMERICS, OBSERVATION_KEY, Outcome, Run, RunError, log_of, older, run};
 use crate::record::contents::EarlierPart;
 use crate::record::error::LogError;
 use crate::record::history::History;
@@ -78,6 +78,8 @@ pub struct Resumption {
     history: History,
     scenario: AnyScenario,
     state: State,
+    /// Measures that remember nothing of an older log.
+    begun_anew: Vec<&'static str>,
     /// The changes, as on the command line; empty where the scenario stays as it was.
     changes: String,
 }
@@ -108,7 +110,15 @@ impl Resumption {
             AnyScenario::Two(_) => State::Two(last_state_and_place(&log)?),
             AnyScenario::Three(_) => State::Three(last_state_and_place(&log)?),
         };
-        let resumption = Resumption { log, history, scenario, state, changes };
+        let begun_anew = match (&scenario, &state) {
+            _ if older::observes_alike(history.value(OBSERVATION_KEY)) => Vec::new(),
+            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => older::begun_anew(scenario, state),
+            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => {
+                older::begun_anew(scenario, state)
+            }
+            _ => Vec::new(),
+        };
+        let resumption = Resumption { log, history, scenario, state, begun_anew, changes };
         resumption.check_end()?;
         Ok(resumption)
     }
@@ -129,6 +139,11 @@ impl Resumption {
     /// What is missing in the log, as a sentence, where it was cut off.
     pub fn cut_off(&self) -> Option<&str> {
         self.history.cut_off.as_deref()
+    }
+
+    /// Measures of an older log that begin anew where the run goes on: what they remember has another form now.
+    pub fn begun_anew(&self) -> &[&'static str] {
+        &self.begun_anew
     }
 
     /// The folder that it goes into unless somebody wants another one: beside that of the log.
@@ -153,7 +168,7 @@ impl Resumption {
         stop: &AtomicBool,
         tell: Listener<'_>,
     ) -> Result<Outcome, RunError> {
-        let Resumption { log, history, scenario, state, changes } = self;
+        let Resumption { log, history, scenario, state, changes, .. } = self;
         if matches!(state, State::Two(None) | State::Three(None)) {
             return run(&scenario, folder, force, stop, tell);
         }

@@ -69,8 +69,8 @@ pub(crate) fn table<'a>(columns: &[Column], units: &Units, rows: impl Iterator<I
     text
 }
 
-/// A unit such as `kg·m^2/s^2` in the scenario's names, `1` for a pure number.
-fn unit_name(dimension: Dimension, units: &Units) -> String {
+/// A unit such as `kg·m^2/s^2` or `kg/(m·s^2)` in the scenario's names, `1` for a pure number.
+pub(crate) fn unit_name(dimension: Dimension, units: &Units) -> String {
     let powers =
         [(&units.mass, dimension.mass), (&units.length, dimension.length), (&units.time, dimension.time)];
     let side = |sign: i8| {
@@ -82,7 +82,11 @@ fn unit_name(dimension: Dimension, units: &Units) -> String {
                 power => format!("{name}^{power}"),
             })
             .collect();
-        factors.join("·")
+        match (factors.len(), sign) {
+            // Without brackets, kg/m·s^2 reads as kg·s^2/m.
+            (2.., -1) => format!("({})", factors.join("·")),
+            _ => factors.join("·"),
+        }
     };
     match (side(1), side(-1)) {
         (above, below) if below.is_empty() => {
@@ -108,6 +112,8 @@ mod tests {
         assert_eq!(name(0, 0, 0), "1");
         assert_eq!(name(1, 2, -2), "kg·m^2/s^2");
         assert_eq!(name(0, 0, -1), "1/s");
+        assert_eq!(name(1, -1, -2), "kg/(m·s^2)");
+        assert_eq!(name(0, -1, -1), "1/(m·s)");
     }
 
     #[test]

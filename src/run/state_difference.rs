@@ -12,16 +12,16 @@ pub(super) fn said(what: &str, log: impl std::fmt::Debug, rerun: impl std::fmt::
     format!("{what} is {log:?} in the log and {rerun:?} in the re-run")
 }
 
-/// The first difference between the state `log` and the same one of a `rerun`, bit for bit; `memories` says whether those
-/// of measures count.
+/// The first difference between the state `log` and the same one of a `rerun`, bit for bit; `observes_alike` says
+/// whether what measures remember and the momentum of walls count, which other releases may observe in other ways.
 pub(super) fn first_difference<V: Vector>(
     log: &SavedState<'_, V>,
     rerun: &SavedState<'_, V>,
-    memories: bool,
+    observes_alike: bool,
 ) -> Option<String> {
     let of_grains = grains(log, rerun);
-    let of_sums = || sums(log, rerun);
-    let of_memories = || if memories { remembered(log, rerun) } else { None };
+    let of_sums = || sums(log, rerun, observes_alike);
+    let of_memories = || if observes_alike { remembered(log, rerun) } else { None };
     of_grains.or_else(of_sums).or_else(of_memories)
 }
 
@@ -77,7 +77,11 @@ pub(super) fn grain_in_picture(log: &Frame, rerun: &Frame) -> Option<String> {
 }
 
 /// The first number beside the grains that differs.
-fn sums<V: Vector>(log: &SavedState<'_, V>, rerun: &SavedState<'_, V>) -> Option<String> {
+fn sums<V: Vector>(
+    log: &SavedState<'_, V>,
+    rerun: &SavedState<'_, V>,
+    observes_alike: bool,
+) -> Option<String> {
     let numbers = [
         ("the time", log.time, rerun.time),
         ("what the clock holds back", log.compensation, rerun.compensation),
@@ -99,8 +103,15 @@ fn sums<V: Vector>(log: &SavedState<'_, V>, rerun: &SavedState<'_, V>) -> Option
     if let Some((what, a, b)) = counts.into_iter().find(|(_, a, b)| a != b) {
         return Some(said(what, a, b));
     }
+    let totals = |state: &SavedState<'_, V>| {
+        let mut totals = state.totals.clone();
+        if !observes_alike {
+            totals.counts.wall_momentum = Default::default();
+        }
+        format!("{totals:?}")
+    };
     let texts = [
-        ("the sum of all steps and events", format!("{:?}", log.totals), format!("{:?}", rerun.totals)),
+        ("the sum of all steps and events", totals(log), totals(rerun)),
         ("the beginning", format!("{:?}", log.beginning), format!("{:?}", rerun.beginning)),
     ];
     if let Some((what, a, b)) = texts.into_iter().find(|(_, a, b)| a != b) {

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use super::rerun::{Reached, Rerun};
 use super::resume::{OtherNumerics, check_numerics, scenario_of};
 use super::state_difference::{first_difference, grain_in_picture, said, same};
-use super::{Listener, RunError};
+use super::{Listener, OBSERVATION_KEY, RunError, older};
 use crate::matter::state_hash::state_hash;
 use crate::record::checkpoints::{Checkpoint, each_checkpoint};
 use crate::record::contents::Frame;
@@ -15,6 +15,7 @@ use crate::record::error::{LogError, numbers};
 use crate::record::frame::frame;
 use crate::record::history::History;
 use crate::record::log_at;
+use crate::record::state::SavedState;
 use crate::scenario::Overrides;
 use crate::scenario::error::ScenarioError;
 use crate::scenario::model::{AnyScenario, Scenario};
@@ -150,10 +151,11 @@ fn verify_in<V: Vector>(
     tell: Listener<'_>,
 ) -> Result<Verdict, VerifyError> {
     let same_version = history.value("version") == env!("CARGO_PKG_VERSION");
+    let observes_alike = same_version && older::observes_alike(history.value(OBSERVATION_KEY));
     let rerun = Rerun::new(log, parts, &history.earlier, stop, tell);
     let mut check = Check {
         rerun,
-        same_version,
+        observes_alike,
         columns: Vec::new(),
         extent: Extent::default(),
         parted: None,
@@ -186,8 +188,8 @@ enum End {
 /// A log that is held against a re-run.
 struct Check<'s, V: Vector> {
     rerun: Rerun<'s, V>,
-    /// Whether the measures are those of the log.
-    same_version: bool,
+    /// Whether sums and measures are those of the log.
+    observes_alike: bool,
     /// Names of the columns in the log.
     columns: Vec<String>,
     extent: Extent,
@@ -211,17 +213,35 @@ impl<V: Vector> Check<'_, V> {
             Checkpoint::Recording { values, state_hash, grains } => {
                 self.recording(&values, &state_hash, grains)
             }
-            Checkpoint::State(state) => self.rerun.begin(Some(&state)).map_err(End::Failed).and_then(|()| {
+            Checkpoint::State(state) => self.begin(&state).and_then(|()| {
                 let unlike = |misfit: Misfit| End::Different(misfit.to_string());
-                self.reach(state.time, self.rerun.is_interruption(&state).map_err(unlike)?)?;
+                self.reach(
+                    state.time,
+                    self.rerun.is_interruption(&self.without_old_memories(&state)).map_err(unlike)?,
+                )?;
                 let compared = self.rerun.state(state.totals.steps, state.totals.events.all, |rerun| {
-                    first_difference(&state, rerun, self.same_version)
+                    first_difference(&state, rerun, self.observes_alike)
                 });
                 self.count(compared.map_err(unlike)?, |extent| extent.states += 1)
             }),
         };
         self.end = done.err();
         self.end.is_none()
+    }
+
+    fn begin(&mut self, state: &SavedState<'static, V>) -> Result<(), End> {
+        let state = self.without_old_memories(state);
+        self.rerun.begin(Some(&state)).map_err(End::Failed)
+    }
+
+    /// The state to go on from: what measures of another release remember is left out.
+    fn without_old_memories(&self, state: &SavedState<'static, V>) -> SavedState<'static, V> {
+        let mut state = state.clone();
+        if !self.observes_alike {
+            state.memories.clear();
+            state.samples.clear();
+        }
+        state
     }
 
     fn recording(&mut self, values: &[f64], hash: &str, grains: u64) -> Result<(), End> {
@@ -238,7 +258,7 @@ impl<V: Vector> Check<'_, V> {
             self.parted = Some(self.at(difference));
             return Ok(());
         }
-        let difference = self.same_version.then(|| self.first_column(values, &columns, &row)).flatten();
+        let difference = self.observes_alike.then(|| self.first_column(values, &columns, &row)).flatten();
         self.count(difference, |extent| extent.hashes += 1)
     }
 

@@ -1,5 +1,7 @@
 //! Bounds of numbers, and how they are told.
 
+use crate::number::{exact, plain};
+
 /// The largest magnitude of any number in a scenario: products of a few stay finite.
 const HUGE: f64 = 1e40;
 /// The smallest positive number where one is asked for.
@@ -41,29 +43,11 @@ impl Bound {
         if (self.low..=self.high).contains(&value) {
             return None;
         }
-        Some(format!("{} is out of bounds; give {}", shown(value), self.request))
+        Some(format!("{} is out of bounds; give {}", exact(value), self.request))
     }
-}
-
-/// A number as a person writes it.
-pub(super) fn shown(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{value:e}") } else { format!("{value}") }
 }
 
 /// A number with four digits, for estimates.
 pub(super) fn rounded(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
-    if (1e-4..1e7).contains(&value.abs()) {
-        let text = format!("{value:.digits$}");
-        if digits == 0 {
-            return text;
-        }
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{value:.3e}")
-    }
+    plain(value, 4)
 }

@@ -6,8 +6,7 @@ use super::bound::rounded;
 use super::estimate::{self, Estimate};
 use super::initial;
 use super::model::{AnyScenario, EngineKind, InitialPositions, Scenario};
-use super::{cost, warnings};
-use crate::law::kinetic_theory::mean_free_path;
+use super::{cost, exact, warnings};
 use crate::law::piecewise::PiecewiseLinear;
 use crate::machine::Machine;
 use crate::space::Vector;
@@ -70,8 +69,7 @@ impl Check {
         self.add("grains", now_and_then(scenario, scenario.count.to_string(), all.to_string()));
         let fractions = (scenario.volume_fraction(), volume_fraction_of(scenario, all));
         self.add("volume fraction", now_and_then(scenario, rounded(fractions.0), rounded(fractions.1)));
-        if scenario.count > 0 {
-            let path = mean_free_path::<V>(scenario.mean_grain(), scenario.volume_fraction());
+        if let Some(path) = estimate::mean_free_path(scenario) {
             let in_diameters = rounded(path / scenario.mean_grain().diameter);
             self.add("mean free path", format!("{} ({in_diameters} diameters)", length(scenario, path)));
         }
@@ -132,7 +130,7 @@ impl Check {
     }
 
     fn time<V: Vector>(&mut self, scenario: &Scenario<V>) {
-        if let Some(rates) = estimate::rates(scenario) {
+        if let Some(rates) = estimate::rates(scenario).filter(|_| estimate::is_within_theory(scenario)) {
             let theory = if scenario.engine.kind == EngineKind::Dsmc { "Boltzmann" } else { "Enskog" };
             let frequency = rounded(rates.collision_frequency);
             let unit = if scenario.units.time == "time" { "unit of time" } else { &scenario.units.time };
@@ -164,6 +162,10 @@ impl Check {
         }
         if let Some(seconds) = cost::seconds(scenario) {
             self.add("expected time", format!("{} on one core", told(seconds, 2.0, spoken)));
+        }
+        if let Some(exact) = exact::proposal(scenario) {
+            let long = told(exact.seconds, 2.0, spoken);
+            self.add("exact dynamics", format!("{long} on one core ({})", exact.options()));
         }
     }
 }

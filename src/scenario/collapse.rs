@@ -6,47 +6,94 @@ use super::estimate;
 use super::model::{Cure, Scenario};
 use crate::law::kinetic_theory::{collapse_restitution, optical_depth};
 use crate::law::restitution::{Constant, RestitutionLaw};
+use crate::number;
 use crate::space::Vector;
 
 /// A contact time that leaves a gas as it is, in mean times between collisions of a grain.
 const SHORT_IN_A_GAS: f64 = 1e-4;
-/// A speed below which grains that come to lie may bounce without loss, in units of √(|g| d). A contact time is no
-/// cure there: grains that lie collide all the time, and whatever falls on them would come off without loss.
-const SLOW_AT_REST: f64 = 0.05;
+/// A speed that has ended in collapse, in those of [`Cure::at_rest`]: 0.1 √(g d) in place of 0.3.
+const HAS_COLLAPSED: f64 = 0.34;
+/// A speed of a cure that leaves a gas between moving walls as it is, in speeds of the walls.
+const SLOW_BESIDE_WALLS: f64 = 1e-4;
 
 /// What to say of a run without a cure that collapse is likely to end.
 pub(super) fn warning<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    let rules = scenario.engine.event_driven;
-    // A contact time is no cure for grains that lie on each other.
-    let is_cured =
-        rules.cure != Cure::default() && (rules.cure.contact_time.is_none() || !cost::settles(scenario));
-    if !scenario.engine.kind.is_event_driven() || is_cured {
+    if !scenario.engine.kind.is_event_driven() {
         return None;
     }
+    if is_cured(scenario) {
+        return too_slow(scenario);
+    }
+    let (reason, remedy) = danger(scenario)?;
+    Some(format!(
+        "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {} prevents it",
+        remedy
+    ))
+}
+
+/// What to say of a speed with which runs under gravity have collapsed.
+fn too_slow<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
+    let cure = scenario.engine.event_driven.cure;
+    let tried = tried(scenario);
+    let (speed, enough) = cure.elastic_below.zip(tried.elastic_below)?;
+    (cost::settles(scenario) && cure.contact_time.is_none() && speed < HAS_COLLAPSED * enough).then(|| {
+        format!(
+            "engine.event_driven.collapse.elastic_below = {} may be too low under gravity: a chute ended in collapse with as little; \
+             {tried} has been tried on chutes, beds and heaps",
+            number::exact(speed)
+        )
+    })
+}
+
+/// The cure that has been tried on grains that lie.
+fn tried<V: Vector>(scenario: &Scenario<V>) -> Cure {
+    Cure::at_rest(scenario.gravity.length(), scenario.largest_diameter())
+}
+
+/// Whether the scenario has a cure that helps. A contact time alone is none for grains that lie on each other: they collide all the
+/// time.
+pub(super) fn is_cured<V: Vector>(scenario: &Scenario<V>) -> bool {
+    let cure = scenario.engine.event_driven.cure;
+    let is_contact_time = cure == Cure { contact_time: cure.contact_time, ..Cure::default() };
+    cure != Cure::default() && !(is_contact_time && cost::settles(scenario))
+}
+
+/// The cure that an event-driven run of `scenario` needs beside what it has; `None` where it needs none.
+pub(super) fn needed<V: Vector>(scenario: &Scenario<V>) -> Option<Cure> {
+    if is_cured(scenario) { None } else { danger(scenario).map(|(_, cure)| cure) }
+}
+
+/// Why an event-driven run without a cure is likely to collapse, and the cure for that.
+fn danger<V: Vector>(scenario: &Scenario<V>) -> Option<(String, Cure)> {
     // A law that makes slow collisions elastic is a cure in itself.
     let RestitutionLaw::Constant(Constant(restitution)) = scenario.restitution else { return None };
-    let bound = critical_restitution::<V>(cost::final_grains(scenario), scenario);
-    let (reason, remedy) = if restitution < 1.0 && cost::settles(scenario) {
-        let speed = SLOW_AT_REST * (scenario.grain.diameter * scenario.gravity.length()).sqrt();
+    if restitution < 1.0 && cost::settles(scenario) {
         let reason = "grains that come to rest under gravity collide without end".to_owned();
-        (reason, format!("{{ elastic_below = {speed:.0e} }}"))
-    } else if restitution < bound {
-        let reason = format!(
+        return Some((reason, tried(scenario)));
+    }
+    let bound = critical_restitution::<V>(cost::final_grains(scenario), scenario);
+    let reason = || {
+        format!(
             "r = {} is below {}, where a gas of this size and density can collapse",
             rounded(restitution),
             rounded(bound)
-        );
-        let time = estimate::rates(scenario).map(|rates| SHORT_IN_A_GAS / rates.collision_frequency);
-        (
-            reason,
-            time.map_or("{ rotation = 5 }".to_owned(), |time| format!("{{ contact_time = {time:.0e} }}")),
         )
-    } else {
-        return None;
     };
-    Some(format!(
-        "inelastic collapse may end the run: {reason}; engine.event_driven.collapse = {remedy} prevents it"
-    ))
+    (restitution < bound).then(|| (reason(), of_a_gas(scenario)))
+}
+
+/// A cure that leaves a gas as it is.
+fn of_a_gas<V: Vector>(scenario: &Scenario<V>) -> Cure {
+    let wall_speed = scenario.boundary.largest_wall_speed();
+    if wall_speed > 0.0 {
+        return Cure { elastic_below: Some(SLOW_BESIDE_WALLS * wall_speed), ..Cure::default() };
+    }
+    match estimate::rates(scenario) {
+        Some(rates) => {
+            Cure { contact_time: Some(SHORT_IN_A_GAS / rates.collision_frequency), ..Cure::default() }
+        }
+        None => Cure { rotation: Some(5.0_f64.to_radians()), ..Cure::default() },
+    }
 }
 
 /// The restitution below which collapse can happen in a cube of these grains.
@@ -95,10 +142,30 @@ mod tests {
         assert_eq!(warned("cooling", &["particles.restitution=0.95"]), "");
         let warning = warned("sedimentation", &[]);
         assert!(warning.contains("come to rest under gravity"), "{warning}");
-        assert!(warned("heap", &[]).contains("elastic_below = 5e-2"), "{}", warned("heap", &[]));
+        assert!(
+            warned("heap", &[]).contains("{ elastic_below = 0.3, contact_time = 1e-5 }"),
+            "{}",
+            warned("heap", &[])
+        );
         assert_eq!(warned("heap", &["engine.event_driven.collapse={rotation=5}"]), "");
         let law = "particles.restitution={law='velocity-dependent',r0=0.9,v0=1}";
         assert_eq!(warned("heap", &[law]), "");
         assert_eq!(warned("heap", &["particles.restitution=1"]), "");
+    }
+
+    #[test]
+    fn a_speed_with_which_runs_have_collapsed_is_said() {
+        let with = |speed: &str| {
+            warned("heap", &[&format!("engine.event_driven.collapse={{elastic_below={speed}}}")])
+        };
+        assert!(with("0.1").contains("elastic_below = 0.1 may be too low"), "{}", with("0.1"));
+        assert!(
+            with("0.1").contains("{ elastic_below = 0.3, contact_time = 1e-5 } has been tried"),
+            "{}",
+            with("0.1")
+        );
+        assert_eq!(with("0.2"), "");
+        // Driven gases have no weight to carry.
+        assert_eq!(warned("shear", &["engine.event_driven.collapse={elastic_below=1e-4}"]), "");
     }
 }

@@ -4,7 +4,7 @@ use super::model::{EngineKind, InitialPositions, InitialVelocities, RunLimits};
 use super::reader::Section;
 use super::tables::initial::InitialTable;
 use super::tables::particles::{MOST_GRAINS, ParticlesTable};
-use crate::law::boundary::Boundary;
+use crate::law::boundary::{Boundary, WallKind};
 use crate::law::source::Source;
 use crate::space::Vector;
 
@@ -168,25 +168,60 @@ pub(super) fn velocities<V: Vector>(
     if matches!(table.positions, Some(InitialPositions::Log(_))) {
         return Some(InitialVelocities::Rest);
     }
-    let driven =
-        story.gravity? != V::ZERO || story.boundary?.largest_wall_speed() > 0.0 || story.source?.is_some();
     match table.velocities? {
-        None if !driven => {
-            root.missing(
-                "initial.velocities",
-                "is missing, and nothing drives the grains; write { maxwell = 1.0 }",
-            );
-            None
+        given @ (None | Some(InitialVelocities::Rest)) => {
+            let is_missing = given.is_none();
+            let rest = never_moved(story)?.or(never_collides(story)?);
+            if let Some(reason) = rest {
+                let message = format!(
+                    "{}{reason}; write {{ maxwell = 1.0 }}",
+                    if is_missing { "is missing, and " } else { "\"rest\": " }
+                );
+                if is_missing {
+                    root.missing("initial.velocities", message);
+                } else {
+                    root.mistake("initial.velocities", message);
+                }
+                return None;
+            }
+            Some(InitialVelocities::Rest)
         }
-        Some(InitialVelocities::Rest) if !driven => {
-            root.mistake(
-                "initial.velocities",
-                "\"rest\" without gravity, source or moving wall: nothing would ever move; write { maxwell = 1.0 }",
-            );
-            None
-        }
-        given => Some(given.unwrap_or(InitialVelocities::Rest)),
+        Some(given) => Some(given),
     }
+}
+
+/// Why grains at rest would never be moved: by nothing but gravity, a source, or a wall that comes towards them. A wall that moves
+/// along itself meets only grains that come to it. The outer `None`: not known.
+fn never_moved<V: Vector>(story: &Story<'_, V>) -> Option<Option<&'static str>> {
+    let boundary = story.boundary?;
+    let vibrates = boundary.walls().any(|(_, _, wall)| matches!(wall.kind, WallKind::Vibrating { .. }));
+    if story.gravity? != V::ZERO || story.source?.is_some() || vibrates {
+        return Some(None);
+    }
+    Some(Some(if boundary.largest_wall_speed() > 0.0 {
+        "no grain at rest ever meets a wall that moves along itself, so nothing would ever move"
+    } else {
+        "without gravity, source or vibrating wall nothing would ever move"
+    }))
+}
+
+/// Why grains that begin at rest would never collide, where only collisions end the run: gravity along periodic axes alone lets all
+/// of them fall alike. The outer `None`: not known.
+fn never_collides<V: Vector>(story: &Story<'_, V>) -> Option<Option<&'static str>> {
+    let run = story.run?;
+    let ends = run.time.is_some() || run.steps.is_some();
+    let alike = fall_alike(story.gravity?, story.boundary?);
+    Some((alike && !ends).then_some(
+        "all grains fall alike along a periodic axis and never collide, so run.collisions_per_particle is never reached",
+    ))
+}
+
+/// Whether gravity moves grains that begin at rest, but none against another one or a wall: it pulls along periodic axes alone, and
+/// no wall comes towards them.
+pub(super) fn fall_alike<V: Vector>(gravity: V, boundary: &Boundary<V>) -> bool {
+    let vibrates = boundary.walls().any(|(_, _, wall)| matches!(wall.kind, WallKind::Vibrating { .. }));
+    let pulled = (0..V::DIMENSION).filter(|&axis| gravity[axis] != 0.0);
+    gravity != V::ZERO && !vibrates && pulled.into_iter().all(|axis| boundary.is_periodic(axis))
 }
 
 /// There is something to equilibrate.

@@ -1,10 +1,14 @@
 //! What kinetic theory says about a run: collisions, first step, number of steps.
 
+mod settled;
+
+use super::cost::settles;
 use super::initial::stated_temperature;
 use super::model::{EngineKind, RunLimits, Scenario, TimeStep};
 use super::pace::{falling_speed, falls_for_ever, longest_step, starting_speed};
 use crate::law::boundary::WallKind;
-use crate::law::kinetic_theory::{collision_frequency, cooling_per_collision, haff_time};
+use crate::law::kinetic_theory::{self, collision_frequency, cooling_per_collision, haff_time};
+use crate::law::mixture::Mixture;
 use crate::space::Vector;
 
 /// What a logarithm of the energy falls by until flow is all that is left of it, about.
@@ -38,13 +42,38 @@ pub(super) fn contact_correlation<V: Vector>(scenario: &Scenario<V>) -> f64 {
     }
 }
 
+/// The species of the start, where there are several.
+fn mixture<V: Vector>(scenario: &Scenario<V>) -> Option<Mixture> {
+    (!scenario.species.is_empty()).then(|| Mixture::new(scenario.constituents(), scenario.size.product()))
+}
+
+/// Mean free path at the start [length]; `None` without grains, and of mixtures too dense for what is known of them.
+pub(super) fn mean_free_path<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
+    let path = || match mixture(scenario) {
+        Some(mixture) => mixture.mean_free_path::<V>(),
+        None => kinetic_theory::mean_free_path::<V>(scenario.grain, scenario.volume_fraction()),
+    };
+    (scenario.count > 0 && is_within_theory(scenario)).then(path)
+}
+
+/// Whether contact values are those of a fluid; of dense gases of one kind the formula is a bound to the right side still.
+pub(super) fn is_within_theory<V: Vector>(scenario: &Scenario<V>) -> bool {
+    scenario.species.is_empty() || scenario.volume_fraction() < V::FREEZING
+}
+
 pub(super) fn rates<V: Vector>(scenario: &Scenario<V>) -> Option<Rates> {
     let temperature = stated_temperature(scenario);
     if temperature == 0.0 || scenario.count < 2 {
         return None;
     }
-    let (nu, correlation) = (scenario.volume_fraction(), contact_correlation(scenario));
-    let collision_frequency = collision_frequency::<V>(scenario.mean_grain(), nu, temperature, correlation);
+    let collision_frequency = match mixture(scenario) {
+        Some(mixture) => mixture.collision_frequency::<V>(temperature),
+        None => {
+            let (nu, correlation) = (scenario.volume_fraction(), contact_correlation(scenario));
+            collision_frequency::<V>(scenario.grain, nu, temperature, correlation)
+        }
+    };
+    // While all species have one temperature a collision takes (1 − r²) T of the energy, whatever the masses.
     let restitution = scenario.restitution.typical();
     let haff_time = (restitution < 1.0).then(|| haff_time::<V>(restitution, collision_frequency));
     Some(Rates { collision_frequency, haff_time })
@@ -83,9 +112,15 @@ pub(super) fn capped_step<V: Vector>(scenario: &Scenario<V>) -> Option<(f64, f64
 }
 
 /// Collisions of an event-driven run until its first limit, those of its equilibration included; `None` for
-/// engines with steps, and where grains begin at rest.
+/// engines with steps, and where grains begin at rest without coming to lie.
 pub(super) fn collisions<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
-    let rates = rates(scenario).filter(|_| scenario.engine.kind.is_event_driven())?;
+    if !scenario.engine.kind.is_event_driven() {
+        return None;
+    }
+    if settles(scenario) {
+        return settled::collisions(scenario);
+    }
+    let rates = rates(scenario)?;
     let RunLimits { time, collisions_per_particle, .. } = scenario.run;
     let by_time = time.or(resting_time(scenario)).map(|time| match cools(scenario) {
         true => collisions_until(scenario, time, rates),
@@ -127,15 +162,18 @@ pub(super) fn steps<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
 /// Whether a gas cools so far that grains which still move together no longer move apart: they collide less and less, and
 /// steps are capped by how far they fly.
 fn flows_in_the_end<V: Vector>(scenario: &Scenario<V>) -> bool {
+    cools(scenario) && cooled(scenario).is_some_and(|cooled| 2.0 * cooled > FLOW_ALONE)
+}
+
+/// ln(1 + t/t₀) at the end of a run of a gas that cools, by Haff's law: half of the logarithm by which its energy falls. `None`
+/// where nothing is lost.
+pub(super) fn cooled<V: Vector>(scenario: &Scenario<V>) -> Option<f64> {
     let RunLimits { time, collisions_per_particle, .. } = scenario.run;
-    let Some((rates, haff_time)) = rates(scenario).and_then(|rates| Some((rates, rates.haff_time?))) else {
-        return false;
-    };
-    // ln(1 + t/t₀), half of the logarithm of what is left of the energy.
+    let rates = rates(scenario)?;
+    let haff_time = rates.haff_time?;
     let by_time = time.map(|time| (time / haff_time).ln_1p());
     let by_collisions = collisions_per_particle.map(|limit| limit / (rates.collision_frequency * haff_time));
-    let cooled = [by_time, by_collisions].into_iter().flatten().reduce(f64::min);
-    cools(scenario) && cooled.is_some_and(|cooled| 2.0 * cooled > FLOW_ALONE)
+    [by_time, by_collisions].into_iter().flatten().reduce(f64::min)
 }
 
 /// Steps until the first limit while the largest speed is `speed`, or cools down from it.
@@ -172,7 +210,7 @@ pub(super) fn steps_before_the_start<V: Vector>(scenario: &Scenario<V>) -> f64 {
 }
 
 /// Whether nothing feeds the gas: Haff's law then tells how steps grow.
-fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
+pub(super) fn cools<V: Vector>(scenario: &Scenario<V>) -> bool {
     scenario.gravity == V::ZERO
         && scenario.boundary.walls().all(|(_, _, wall)| match wall.kind {
             WallKind::Rough { velocity } => velocity == V::ZERO,

@@ -49,8 +49,14 @@ pub(super) fn fetch(source: &str) -> Result<Fetched, ScenarioError> {
         let at = error.utf8_error().valid_up_to();
         wrong(format!("is not UTF-8 text (byte {at}); a scenario is a TOML text"))
     })?;
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    Ok(Fetched { name: stem(path), text, folder })
+    Ok(Fetched { name: stem(path), text, folder: folder_of(path) })
+}
+
+/// The folder of the file that `path` names; of a link, that of the file to which it leads in the end. What leads to no
+/// file, such as a pipe, has none but its own.
+fn folder_of(path: &Path) -> PathBuf {
+    let target = if path.is_symlink() { path.canonicalize().ok() } else { None };
+    target.as_deref().unwrap_or(path).parent().unwrap_or(Path::new("")).to_owned()
 }
 
 fn missing(source: &str) -> String {
@@ -86,6 +92,25 @@ mod tests {
         assert!(message(&path("binary")).contains("not UTF-8"));
         std::fs::write(path("large"), vec![b'#'; (LARGEST + 1) as usize]).unwrap();
         assert!(message(&path("large")).contains("larger than 1 MiB"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn relative_paths_start_beside_the_file_and_not_beside_a_link_to_it() {
+        use std::os::unix::fs::symlink;
+        let place = tempfile::tempdir().unwrap();
+        let root = place.path().canonicalize().unwrap();
+        std::fs::create_dir_all(root.join("real")).unwrap();
+        std::fs::create_dir_all(root.join("links")).unwrap();
+        std::fs::write(root.join("real/a.toml"), "").unwrap();
+        symlink("../real/a.toml", root.join("links/b.toml")).unwrap();
+        symlink("b.toml", root.join("links/c.toml")).unwrap();
+        for link in ["links/b.toml", "links/c.toml"] {
+            let fetched = fetch(&root.join(link).to_string_lossy()).unwrap();
+            assert_eq!(fetched.folder, root.join("real"), "{link}");
+            // The run is called by the name that was given.
+            assert_eq!(fetched.name, stem(Path::new(link)));
+        }
     }
 
     #[test]

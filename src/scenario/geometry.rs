@@ -5,6 +5,7 @@ use crate::matter::grain::Grain;
 use crate::matter::grid::Grid;
 use crate::observe::field::Quantity;
 use crate::observe::setting::Setting;
+use crate::record::contents::Walls;
 use crate::space::Vector;
 
 impl<V: Vector> Scenario<V> {
@@ -12,6 +13,12 @@ impl<V: Vector> Scenario<V> {
     pub fn grid(&self) -> Grid<V> {
         let periodic: [bool; 3] = std::array::from_fn(|axis| self.boundary.is_periodic(axis));
         Grid::new(self.grid_origin, self.grid_size, &self.cells, &periodic)
+    }
+
+    /// The space that grains may be in and the kinds of its sides, as logs, exports and pictures have it.
+    pub fn walls(&self) -> Walls {
+        let grid = self.grid();
+        Walls::new(&self.boundary, grid.origin(), grid.end())
     }
 
     /// What measures may know of it.
@@ -22,6 +29,7 @@ impl<V: Vector> Scenario<V> {
             grid: self.grid(),
             boundary: self.boundary,
             grain: self.grain,
+            species: self.species.len(),
             is_poured: self.source.is_some(),
             roughness: self.roughness,
             counts_impacts: self.engine.kind == EngineKind::EventDriven,

@@ -67,6 +67,19 @@ pub enum InitialError {
         /// The engine of this scenario.
         kind: &'static str,
     },
+    /// The log holds other numbers of its species.
+    #[error(
+        "initial.positions: the log's last state holds {} grains of its species, the scenario says {}; give the [[particles.species]] share = {}",
+        sum_of(found),
+        sum_of(expected),
+        shares_of(found)
+    )]
+    Shares {
+        /// Grains in the log `[species]`.
+        found: Vec<u32>,
+        /// Grains in the scenario `[species]`.
+        expected: Vec<u32>,
+    },
     /// No identities are left for further grains.
     #[error(
         "initial.positions: grain {id} of the log has an identity after which there are not enough for {to_come} poured \
@@ -87,6 +100,17 @@ pub enum InitialError {
          grains"
     )]
     Lattice,
+}
+
+/// Numbers of grains as a sum.
+fn sum_of(counts: &[u32]) -> String {
+    counts.iter().map(u32::to_string).collect::<Vec<_>>().join(" + ")
+}
+
+/// Shares that make these numbers of grains. A share is above 0: one so small that it makes no grain stands for none.
+fn shares_of(counts: &[u32]) -> String {
+    let share = |&count: &u32| if count == 0 { "1e-12".to_owned() } else { count.to_string() };
+    counts.iter().map(share).collect::<Vec<_>>().join(", ")
 }
 
 /// The gas that `scenario` begins with, before any equilibration. Where it starts from a log,

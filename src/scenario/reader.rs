@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::bound::{Bound, shown};
+use super::bound::Bound;
 use super::error::{Mistake, Place};
 use super::locate::Locator;
 use super::path::KeyPath;
 use super::schema;
 use super::suggest::{did_you_mean, nearest};
+use crate::number::exact;
 use crate::space::Vector;
 
 /// Collects mistakes with their places.
@@ -126,7 +127,16 @@ impl<'a> Section<'a> {
     pub(super) fn root(reader: &'a Reader, table: &'a dyn TableLike, keys: &[&str]) -> Self {
         let section = Section { reader, path: KeyPath::default(), table: Some(table) };
         section.refuse_unknown(keys);
+        // Said before anything is missed: a key of the head below a table belongs to that table.
+        let below = schema::ROOT[..4].iter().filter(|key| section.holds_below(key));
+        reader.misspelt.borrow_mut().extend(below.map(|key| KeyPath::of([*key])));
         section
+    }
+
+    /// Whether one of its tables has `key`.
+    pub(super) fn holds_below(&self, key: &str) -> bool {
+        let mut items = self.table.into_iter().flat_map(|table| table.iter());
+        items.any(|(_, item)| item.as_table_like().is_some_and(|table| table.contains_key(key)))
     }
 
     /// The table under `key`, which may hold `keys`; without content when it is missing or not a table.
@@ -223,12 +233,14 @@ impl<'a> Section<'a> {
     /// Where to put a key that is not known here.
     fn where_it_belongs(&self, key: &str, keys: &[&str]) -> String {
         let here = self.path.to_string();
+        if key.contains("friction") {
+            return schema::NO_FRICTION.to_owned();
+        }
         if let Some(meant) = nearest(key, keys.iter().copied()) {
             self.reader.misspelt.borrow_mut().push(self.path.join(meant));
             return format!("; did you mean `{meant}`?");
         }
         if !here.is_empty() && schema::ROOT[..4].contains(&key) {
-            self.reader.misspelt.borrow_mut().push(KeyPath::of([key]));
             return format!("; `{key}` belongs at the top of the file, above the first [table]");
         }
         if keys.contains(&"wall") && schema::WALL.contains(&key) {
@@ -263,7 +275,7 @@ impl<'a> Section<'a> {
             } else {
                 "write it without point or exponent".to_owned()
             };
-            return self.wrong(key, format!("{} must be a whole number; {remedy}", shown(value)));
+            return self.wrong(key, format!("{} must be a whole number; {remedy}", exact(value)));
         }
         let Some(value) = item.as_integer() else {
             return self.wrong(key, format!("must be a whole number, not {}", kind(item)));
@@ -383,7 +395,7 @@ fn kind_of_value(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text \"{}\"", text.value().escape_debug()),
         Value::Integer(value) => format!("the number {}", value.value()),
-        Value::Float(value) => format!("the number {}", shown(*value.value())),
+        Value::Float(value) => format!("the number {}", exact(*value.value())),
         Value::Boolean(value) => format!("{}", value.value()),
         Value::Datetime(_) => "a date".to_owned(),
         Value::Array(_) => "a list".to_owned(),

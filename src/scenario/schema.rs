@@ -61,10 +61,14 @@ pub(super) const PARTICLES: &[&str] = &[
     "moment_of_inertia",
     "species",
 ];
-/// `[[particles.species]]`.
+/// What is said of `friction`, which users of other programs look for.
+pub(super) const NO_FRICTION: &str = "; there is no Coulomb friction, neither between grains nor at walls. Rough grains of event-driven \
+    runs turn each other by particles.tangential_restitution (-1 smooth … 1), and walls take up momentum along them \
+    as { wall = \"rough\" } or { wall = \"statistical\", reversal_probability = p }";
 /// Keys of walls of all kinds.
 pub(super) const WALL: &[&str] =
     &["wall", "restitution", "velocity", "reversal_probability", "amplitude", "frequency"];
+/// `[[particles.species]]`.
 pub(super) const SPECIES: &[&str] = &["diameter", "mass", "share"];
 /// `particles.restitution`, where it is a table.
 pub(super) const RESTITUTION: &[&str] = &["law", "r0", "v0"];

@@ -13,9 +13,32 @@ pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, candidate)| candidate)
 }
 
-/// `did you mean …?` where a candidate is near, the `remedy` where none is: one ending, never both.
+/// Candidates that are named when a word stands in several of them.
+const MOST_MEANT: usize = 6;
+
+/// `did you mean …?` where a candidate is near, or where the name is a part of some; the `remedy` where none is: one ending,
+/// never both.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>, remedy: &str) -> String {
-    nearest(name, candidates).map_or_else(|| remedy.to_owned(), |meant| format!("did you mean `{meant}`?"))
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    if let Some(meant) = nearest(name, candidates.iter().copied()) {
+        return format!("did you mean `{meant}`?");
+    }
+    match &holding(name, &candidates)[..] {
+        [] => remedy.to_owned(),
+        [one] => format!("did you mean `{one}`?"),
+        [first @ .., last] => {
+            let first: Vec<String> = first.iter().map(|name| format!("`{name}`")).collect();
+            format!("did you mean {} or `{last}`?", first.join(", "))
+        }
+    }
+}
+
+/// The first candidates of which `name` is a word, or several words in a row: `slope` of `heap_slope`.
+fn holding<'a>(name: &str, candidates: &[&'a str]) -> Vec<&'a str> {
+    let padded = |name: &str| format!("-{}-", name.to_lowercase().replace('_', "-"));
+    let part = padded(name);
+    let holds = |candidate: &&&str| name.chars().count() > 1 && padded(candidate).contains(&part);
+    candidates.iter().filter(holds).take(MOST_MEANT).copied().collect()
 }
 
 /// Edits that turn `a` into `b`: insert, delete, replace, swap neighbours (Damerau 1964).
@@ -49,5 +72,15 @@ mod tests {
         assert_eq!(nearest("conut", names), Some("count"));
         assert_eq!(nearest("viscosity", names), None);
         assert_eq!(nearest("x", ["y"]), None);
+    }
+
+    #[test]
+    fn a_word_finds_the_names_that_hold_it() {
+        let names = ["heap_slope", "spectrum_slope", "wall_normal_stress", "heap_slope_left"];
+        let meant = |name: &str| did_you_mean(name, names, "none");
+        assert_eq!(meant("slope"), "did you mean `heap_slope`, `spectrum_slope` or `heap_slope_left`?");
+        assert_eq!(meant("normal-stress"), "did you mean `wall_normal_stress`?");
+        assert_eq!(meant("heap_slop"), "did you mean `heap_slope`?");
+        assert_eq!(meant("ope"), "none");
     }
 }

@@ -1,5 +1,10 @@
 //! The keys that the summary of every run has, whatever its scenario measures, and what each is.
 
+use serde_json::{Map, Value};
+
+use crate::observe::measure::Figure;
+use crate::statistics::Trend;
+
 /// What a key of a summary holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -77,6 +82,50 @@ pub fn is_attribute(key: &str) -> bool {
     ATTRIBUTES.iter().any(|ending| key.ends_with(ending))
 }
 
+/// The figure `name` of a summary with what stands beside it; `None` where it is not there or null.
+pub fn figure_of(summary: &Map<String, Value>, name: &str) -> Option<Figure> {
+    let number = |ending: &str| summary.get(&format!("{name}{ending}")).and_then(Value::as_f64);
+    Some(Figure {
+        name: name.to_owned(),
+        value: Some(number("")?),
+        standard_error: number(STANDARD_ERROR),
+        degrees_of_freedom: number(DEGREES_OF_FREEDOM),
+        trend: trend_of(summary, name),
+    })
+}
+
+/// What a summary says of the series of the figure `name`; `None` where that was not tested.
+pub fn trend_of(summary: &Map<String, Value>, name: &str) -> Option<Trend> {
+    match summary.get(&format!("{name}{STEADY}"))?.as_bool()? {
+        true => Some(Trend::Steady),
+        false => {
+            let word = summary.get(&format!("{name}{TREND}")).and_then(Value::as_str);
+            Some(word.and_then(Trend::of_name).unwrap_or(Trend::Wandering))
+        }
+    }
+}
+
+/// Runs of which at most this share may fail a test of steadiness by chance.
+const BY_CHANCE: f64 = 0.05;
+
+/// Whether a figure is steady in several runs of the same case, given the `trends` of those that tested it: where not more
+/// than one in twenty is not. `None` where no run tested it; where they do different things it wanders.
+pub fn trend_of_runs(trends: impl Iterator<Item = Trend>) -> Option<Trend> {
+    let trends: Vec<Trend> = trends.collect();
+    let unsteady: Vec<Trend> = trends.iter().copied().filter(|trend| !trend.is_steady()).collect();
+    if unsteady.len() as f64 <= BY_CHANCE * trends.len() as f64 {
+        return (!trends.is_empty()).then_some(Trend::Steady);
+    }
+    let first = unsteady[0];
+    Some(if unsteady.iter().all(|trend| *trend == first) { first } else { Trend::Wandering })
+}
+
+/// Names of the figures of a summary, in its order: what has a place for a standard error, be there one or not.
+pub fn figures_of(summary: &Map<String, Value>) -> impl Iterator<Item = &str> {
+    let names = summary.keys().filter(|name| summary.contains_key(&format!("{name}{STANDARD_ERROR}")));
+    names.map(String::as_str)
+}
+
 /// Whether every summary has this key.
 pub fn is_of_every_run(name: &str) -> bool {
     KEYS.iter().any(|(key, _)| *key == name)
@@ -90,4 +139,36 @@ pub fn numbers() -> impl Iterator<Item = &'static str> + Clone {
 /// What an engine counts.
 pub fn counters() -> impl Iterator<Item = &'static str> {
     KEYS.iter().filter(|(_, kind)| *kind == Kind::Counter).map(|(key, _)| *key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_steady_together_where_no_more_than_chance_are_not() {
+        use Trend::{Falling, Rising, Steady, Wandering};
+        let of = |trends: &[Trend]| trend_of_runs(trends.iter().copied());
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[Steady, Steady]), Some(Steady));
+        assert_eq!(of(&[Steady, Rising, Steady]), Some(Rising));
+        assert_eq!(of(&[Falling, Rising]), Some(Wandering));
+        assert_eq!(of(&[vec![Steady; 39], vec![Rising]].concat()), Some(Steady));
+        assert_eq!(of(&[vec![Steady; 38], vec![Rising; 3]].concat()), Some(Rising));
+    }
+
+    #[test]
+    fn a_figure_comes_back_from_a_summary() {
+        let summary = serde_json::json!({
+            "pressure": 0.5, "pressure_standard_error": 0.01, "pressure_degrees_of_freedom": 17.5,
+            "pressure_steady": false, "pressure_trend": "rising", "lone": 2.0, "none": null,
+        });
+        let summary = summary.as_object().unwrap();
+        let pressure = figure_of(summary, "pressure").unwrap();
+        assert_eq!((pressure.value, pressure.standard_error), (Some(0.5), Some(0.01)));
+        assert_eq!((pressure.degrees_of_freedom, pressure.trend), (Some(17.5), Some(Trend::Rising)));
+        assert_eq!(figure_of(summary, "lone").unwrap().trend, None);
+        assert_eq!(figure_of(summary, "none"), None);
+        assert_eq!(figures_of(summary).collect::<Vec<_>>(), ["pressure"]);
+    }
 }

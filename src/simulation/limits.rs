@@ -54,7 +54,8 @@ impl Limits {
         Limits { run: scenario.run, pouring_time }
     }
 
-    /// The first limit that is reached, if any.
+    /// The first limit that is reached, if any. Exactly reached: fixed steps that add up to a limit but for rounding are followed
+    /// by one more, and the final state of a run is that of its last step.
     pub fn end_reason<V: Vector>(
         &self,
         gas: &Gas<V>,

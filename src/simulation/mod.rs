@@ -5,6 +5,7 @@ pub mod figures;
 pub mod fit;
 pub mod limits;
 pub mod pouring;
+mod sampling;
 pub mod schedule;
 
 use std::borrow::Cow;
@@ -12,7 +13,7 @@ use std::borrow::Cow;
 use crate::engine::cell_counts::{self, CellCount};
 use crate::engine::report::Totals;
 use crate::engine::{Engine, EngineError, Horizon, Laps};
-use crate::law::boundary::Boundary;
+use crate::law::boundary::{Boundary, WallKind};
 use crate::matter::gas::Gas;
 use crate::matter::overlaps::overlaps;
 use crate::observe::field::Quantity;
@@ -26,10 +27,8 @@ use crate::space::Vector;
 use fit::Misfit;
 use limits::{EndReason, Limits};
 use pouring::{Pouring, PouringError, Room};
-use schedule::Spread;
-
-/// How many looks a measure of spread cadence takes during a run.
-const SPREAD_SAMPLES: u32 = 400;
+use sampling::Work;
+use schedule::{Due, ROUNDING, Spread};
 
 /// Name under which a saved state keeps what is counted in cells, beside the memories of measures.
 const CELL_COUNTS: &str = "cell-counts";
@@ -58,6 +57,8 @@ pub struct Simulation<'s, V: Vector> {
     beginning: Beginning<V>,
     invalid_states: Option<u64>,
     resumed: Option<Resumed>,
+    /// Measures that could not take over what they remembered.
+    begun_anew: Vec<&'static str>,
 }
 
 /// Where a run was resumed: what stands in its sums and is the work of others.
@@ -106,7 +107,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
         gas.species.clone_from(&scenario.species);
         let mut simulation = Self::assemble(scenario, gas, saved.beginning);
         simulation.engine.restore(&saved.engine, &simulation.gas).map_err(|misfit| misfit.to_string())?;
-        simulation.totals = saved.totals;
+        simulation.totals = saved.totals.clone();
         if let Some(pouring) = &mut simulation.pouring {
             let (poured, last, held) = (simulation.totals.poured, saved.last_poured, saved.held_until);
             pouring.restore(poured, last, held).ok_or("its source never comes to that")?;
@@ -119,17 +120,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
         });
         // A measure that did not watch before begins now.
         simulation.spread_samples();
-        for (measure, taken) in simulation.measures.iter_mut().zip(&mut simulation.samples) {
-            let place = saved.memories.iter().position(|(name, _)| name == measure.name());
-            let Some(place) = place else { continue };
-            if !measure.recall(&saved.memories[place].1) {
-                return Err(format!(
-                    "the measure {} does not remember this; take it out with --set record.measures=[…]",
-                    measure.name()
-                ));
-            }
-            *taken = saved.samples.get(place).copied().unwrap_or(*taken);
-        }
+        simulation.recall(&saved)?;
         if let Some((_, memory)) = saved.memories.iter().find(|(name, _)| name == CELL_COUNTS) {
             let counts = cell_counts::recalled(memory, simulation.gas.grid().number_of_cells());
             simulation.engine.count_in_cells(counts.ok_or("what was counted in cells is of other cells")?);
@@ -143,6 +134,32 @@ impl<'s, V: Vector> Simulation<'s, V> {
         Simulation { resumed, ..self }
     }
 
+    /// Gives back to the measures what they remembered. Those of versions before this one sampled at other places: what they
+    /// cannot use is left, and the measure begins anew.
+    fn recall(&mut self, saved: &SavedState<'_, V>) -> Result<(), String> {
+        let is_earlier = saved.has_even_samples();
+        for (measure, number) in self.measures.iter_mut().zip(&mut self.samples) {
+            let place = saved.memories.iter().position(|(name, _)| name == measure.name());
+            let Some(place) = place else { continue };
+            if !measure.recall(&saved.memories[place].1) {
+                if is_earlier {
+                    self.begun_anew.push(measure.name());
+                    continue;
+                }
+                return Err(format!(
+                    "the measure {} does not remember this; take it out with --set record.measures=[…]",
+                    measure.name()
+                ));
+            }
+            if let Some(next) = saved.samples.get(place)
+                && !(is_earlier && measure.cadence() == Cadence::Spread)
+            {
+                *number = *next;
+            }
+        }
+        Ok(())
+    }
+
     /// The same for a run of which limits or records have changed: samples are spread over its new length.
     pub fn resume_changed(scenario: &'s Scenario<V>, saved: SavedState<'_, V>) -> Result<Self, Misfit> {
         let mut simulation = Self::resume(scenario, saved)?;
@@ -152,9 +169,34 @@ impl<'s, V: Vector> Simulation<'s, V> {
 
     /// Takes all samples that were due up to now as taken.
     fn spread_samples(&mut self) {
-        let (time, progress) = (self.gas.time(), self.progress());
-        for (measure, taken) in self.measures.iter().zip(&mut self.samples) {
-            *taken = sampling(measure.cadence()).map_or(0, |spread| spread.next(time, progress));
+        self.samples = self.measures.iter().map(|measure| self.next_sample(&**measure)).collect();
+    }
+
+    /// The number of the sample that `measure` takes next, when all up to now are taken.
+    fn next_sample(&self, measure: &dyn Measure<V>) -> u64 {
+        match measure.cadence() {
+            Cadence::Recordings => 0,
+            Cadence::Spread => {
+                sampling::next(self.scenario.seed, measure.effort(), self.progress(), self.work())
+            }
+            Cadence::Every(interval) => Spread::Every(interval).next(self.gas.time(), self.progress()),
+        }
+    }
+
+    /// What `measure` waits for when its next sample has that `number`.
+    fn sample_due(&self, measure: &dyn Measure<V>, number: u64) -> Due {
+        match measure.cadence() {
+            Cadence::Recordings => Due::Never,
+            Cadence::Spread => sampling::due(self.scenario.seed, number),
+            Cadence::Every(interval) => Spread::Every(interval).due(number),
+        }
+    }
+
+    /// The work so far, counted.
+    fn work(&self) -> Work {
+        match self.is_event_driven() {
+            true => Work::of_events(self.totals.events.all, self.gas.len()),
+            false => Work::of_steps(self.totals.particle_steps, self.gas.len()),
         }
     }
 
@@ -177,6 +219,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
             beginning,
             invalid_states: None,
             resumed: None,
+            begun_anew: Vec::new(),
         }
     }
 
@@ -198,23 +241,34 @@ impl<'s, V: Vector> Simulation<'s, V> {
         Ok(())
     }
 
+    /// Whether the run has not ended but will at its next stop, which is no farther away than rounding: a multiple of an
+    /// interval may be one step of double precision before the limit that it should be. Never so of engines with steps.
+    pub fn ends_within_rounding(&self) -> bool {
+        if !self.is_event_driven() || self.end_reason().is_some() {
+            return false;
+        }
+        let end = self.limits.end(&self.gas, &self.totals, self.pouring.as_ref()).time;
+        end.is_finite() && end - self.gas.time() <= ROUNDING * end
+    }
+
     /// Where number `done` of `spread` is due; nowhere for engines with steps, which cannot stop there.
     pub fn horizon_of(&self, spread: Spread, done: u64) -> Horizon {
+        self.horizon_of_due(spread.due(done))
+    }
+
+    fn horizon_of_due(&self, due: Due) -> Horizon {
         if !self.is_event_driven() {
             return Horizon::NONE;
         }
-        self.limits.horizon(spread.due(done), &self.gas, &self.totals, self.pouring.as_ref())
+        self.limits.horizon(due, &self.gas, &self.totals, self.pouring.as_ref())
     }
 
     /// The nearest of `horizon`, the run's limits, the next grain and the next sample; after the present.
     fn next_stop(&self, horizon: Horizon) -> Horizon {
         let now = self.gas.time();
         let mut stop = horizon.min(self.limits.end(&self.gas, &self.totals, self.pouring.as_ref()));
-        for (measure, &taken) in self.measures.iter().zip(&self.samples) {
-            stop = match sampling(measure.cadence()) {
-                Some(spread) => stop.min(self.horizon_of(spread, taken)),
-                None => stop,
-            };
+        for (measure, &number) in self.measures.iter().zip(&self.samples) {
+            stop = stop.min(self.horizon_of_due(self.sample_due(&**measure, number)));
         }
         let next_grain = self.pouring.as_ref().and_then(Pouring::next_time).unwrap_or(f64::INFINITY);
         Horizon { time: stop.time.min(next_grain).max(now.next_up()), collisions: stop.collisions.max(1) }
@@ -222,19 +276,14 @@ impl<'s, V: Vector> Simulation<'s, V> {
 
     /// Shows the gas to every measure whose time has come.
     fn take_samples(&mut self) {
-        let snapshot = Snapshot { gas: &self.gas, totals: &self.totals };
-        let progress = self.limits.progress(snapshot.gas.time(), &self.totals, self.pouring.as_ref());
-        let time = snapshot.gas.time();
-        for (measure, taken) in self.measures.iter_mut().zip(&mut self.samples) {
-            match sampling(measure.cadence()) {
-                None => {}
-                // A long step may pass several nominal times: one look stands for all of them.
-                Some(spread) if spread.is_due(*taken, time, progress) => {
-                    measure.sample(&snapshot);
-                    *taken = spread.next(time, progress);
-                }
-                Some(_) => {}
+        let (time, progress) = (self.gas.time(), self.progress());
+        for k in 0..self.measures.len() {
+            if !self.sample_due(&*self.measures[k], self.samples[k]).is_reached(time, progress) {
+                continue;
             }
+            self.measures[k].sample(&Snapshot { gas: &self.gas, totals: &self.totals });
+            // A long step may pass several nominal times: one look stands for all of them.
+            self.samples[k] = self.next_sample(&*self.measures[k]);
         }
     }
 
@@ -259,6 +308,21 @@ impl<'s, V: Vector> Simulation<'s, V> {
     /// How much of the run is done, in [0, 1]; 1 at its end.
     pub fn progress(&self) -> f64 {
         self.limits.progress(self.gas.time(), &self.totals, self.pouring.as_ref())
+    }
+
+    /// From when on steady figures of a run that ends now are taken: `record.from` or the second half. Where walls vibrate,
+    /// so much later that the stretch holds whole periods of the slowest wall, if it holds any [time].
+    pub fn steady_from(&self) -> f64 {
+        let end = self.gas.time();
+        let from = self.scenario.record.from.unwrap_or(0.5 * end);
+        let periods = self.scenario.boundary.walls().filter_map(|(_, _, wall)| match wall.kind {
+            WallKind::Vibrating { frequency, .. } => Some(1.0 / frequency),
+            _ => None,
+        });
+        let period = periods.fold(0.0, f64::max);
+        // A stretch of whole periods loses none by rounding.
+        let whole = ((end - from) / period * (1.0 + 4.0 * f64::EPSILON)).floor();
+        if period > 0.0 && whole >= 1.0 { from.max(end - whole * period) } else { from }
     }
 
     /// The scenario that runs.
@@ -288,6 +352,10 @@ impl<'s, V: Vector> Simulation<'s, V> {
     /// Where the run was resumed, if it was.
     pub fn resumed(&self) -> Option<Resumed> {
         self.resumed
+    }
+    /// Measures of a run that goes on that began anew: an earlier version remembered for them what they cannot use.
+    pub fn begun_anew(&self) -> &[&'static str] {
+        &self.begun_anew
     }
     /// The measures, to be asked for values, profiles and conclusions, with what they look at.
     pub fn observation(&mut self) -> (&mut [Box<dyn Measure<V>>], Snapshot<'_, V>) {
@@ -338,15 +406,6 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
 }
 
-/// When a measure of that cadence samples.
-fn sampling(cadence: Cadence) -> Option<Spread> {
-    match cadence {
-        Cadence::Recordings => None,
-        Cadence::Spread => Some(Spread::Even(SPREAD_SAMPLES)),
-        Cadence::Every(interval) => Some(Spread::Every(interval)),
-    }
-}
-
 /// Runs elastic, without gravity, wall motion or source, until the stated number of collisions per
 /// particle; then sets the stated temperature and the clock to zero.
 fn equilibrate<V: Vector>(
@@ -372,3 +431,5 @@ fn equilibrate<V: Vector>(
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wall_impulse_tests;

@@ -60,6 +60,7 @@ pub struct Pouring<V> {
     axis: usize,
     /// +1 where up is along the axis, −1 where gravity points along it.
     up: f64,
+    gravity: V,
     poured: u32,
     last_poured: f64,
     /// No grain comes before [time].
@@ -79,6 +80,7 @@ impl<V: Vector> Pouring<V> {
             streams: Streams::new(scenario.seed),
             axis,
             up,
+            gravity,
             poured: 0,
             last_poured: -1.0,
             held_until: 0.0,
@@ -112,7 +114,8 @@ impl<V: Vector> Pouring<V> {
         self.held_until
     }
 
-    /// When the next grain is due, or is tried again [time].
+    /// When the next grain is due, or is tried again [time]. Its rounding is part of the trajectory: grains come at these times
+    /// and at no others, and nothing here is compared with slack, as schedules of recordings are.
     pub fn next_time(&self) -> Option<f64> {
         let nominal = f64::from(self.poured) / self.source.rate;
         (!self.is_done()).then(|| nominal.max(self.held_until))
@@ -158,7 +161,9 @@ impl<V: Vector> Pouring<V> {
     }
 
     /// Height above the ground of the upper side of the highest place that is full: a place is a cube
-    /// two diameters wide, full at random close packing. 0 while none is full.
+    /// two diameters wide, full at random close packing. 0 while none is full. Where the stream from the spout is so dense
+    /// that it fills half a place by itself, grains that have met nothing yet do not count, nor do places that fall: they are on
+    /// their way, and nothing lies on them.
     fn top_of_full_places(&self, gas: &Gas<V>) -> f64 {
         let width =
             PLACE_WIDTH * gas.species.iter().fold(gas.grain.diameter, |d, grain| d.max(grain.diameter));
@@ -170,8 +175,14 @@ impl<V: Vector> Pouring<V> {
         let is_mixture = !gas.species.is_empty();
         // Grains in each place, counted by their volumes where those differ.
         let mut counts = vec![0.0; places.iter().product()];
+        // How fast they fall, summed in the same way, where that has to be known.
+        let is_dense = 2.0 * self.source.in_flight(self.gravity, width) >= full;
+        let mut falling = vec![0.0; if is_dense { counts.len() } else { 0 }];
         let mut top = 0;
         for (row, &position) in gas.positions().iter().enumerate() {
+            if is_dense && self.falls_freely(gas.velocities()[row]) {
+                continue;
+            }
             let (mut place, mut level) = (0, 0);
             for axis in (0..V::DIMENSION).rev() {
                 let upwards = axis != self.axis || self.up > 0.0;
@@ -184,12 +195,52 @@ impl<V: Vector> Pouring<V> {
                 place = place * places[axis] + k;
                 level = if axis == self.axis { k + 1 } else { level };
             }
-            counts[place] += if is_mixture { gas.grain_at(row).volume::<V>() / volume } else { 1.0 };
-            if counts[place] >= full {
+            let share = if is_mixture { gas.grain_at(row).volume::<V>() / volume } else { 1.0 };
+            counts[place] += share;
+            if is_dense {
+                falling[place] -= share * self.up * gas.velocities()[row][self.axis];
+            } else if counts[place] >= full {
                 top = top.max(level);
             }
         }
+        if is_dense {
+            top = self.top_of_what_lies((width, full), &places, &counts, &falling);
+        }
         top as f64 * width
+    }
+
+    /// Whether a grain of this velocity has met nothing since the spout let it go: gravity changes its velocity along one
+    /// axis alone, and downwards alone, while a collision with another grain changes the others as well.
+    fn falls_freely(&self, velocity: V) -> bool {
+        (0..V::DIMENSION).all(|axis| match axis == self.axis {
+            true => self.up * velocity[axis] <= self.up * self.source.velocity[axis],
+            false => velocity[axis] == self.source.velocity[axis],
+        })
+    }
+
+    /// The level of the highest place that is `full` and lies. Places lie that are at least half full and stand on the ground or on
+    /// places that lie, and whose grains are slower, on an average, than half of what a fall by the height of a place gives: grains
+    /// of a stream from rest are faster from the second place on.
+    fn top_of_what_lies(
+        &self,
+        (width, full): (f64, f64),
+        places: &[usize],
+        counts: &[f64],
+        falling: &[f64],
+    ) -> usize {
+        let most = 0.5 * (self.gravity.length() * width).sqrt();
+        let layer: usize = places[..self.axis].iter().product();
+        let mut lie = vec![false; counts.len()];
+        let mut top = 0;
+        for place in 0..counts.len() {
+            let level = place / layer % places[self.axis];
+            let is_carried = level == 0 || lie[place - layer];
+            lie[place] = is_carried && 2.0 * counts[place] >= full && falling[place] < most * counts[place];
+            if lie[place] && counts[place] >= full {
+                top = top.max(level + 1);
+            }
+        }
+        top
     }
 }
 

@@ -27,6 +27,21 @@ pub enum Due {
     Never,
 }
 
+/// What rounding may take from a time, as a share of it: a multiple of an interval is rounded twice, once as the interval
+/// and once as the product, and so is a sum of steps.
+pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+impl Due {
+    /// Whether it has come at `time` and `progress`.
+    pub fn is_reached(self, time: f64, progress: f64) -> bool {
+        match self {
+            Due::Progress(place) => progress >= place,
+            Due::Time(nominal) => time >= nominal,
+            Due::Never => false,
+        }
+    }
+}
+
 /// Decades of progress that a logarithmic spread covers.
 const DECADES: f64 = 3.0;
 
@@ -50,11 +65,7 @@ impl Spread {
 
     /// Whether number `done` (0 for the first) is due at `time` and `progress`.
     pub fn is_due(self, done: u64, time: f64, progress: f64) -> bool {
-        match self.due(done) {
-            Due::Progress(place) => progress >= place,
-            Due::Time(nominal) => time >= nominal,
-            Due::Never => false,
-        }
+        self.due(done).is_reached(time, progress)
     }
 
     /// The number that is due next after everything up to `time` and `progress` is done.

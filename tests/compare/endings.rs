@@ -1,10 +1,11 @@
 //! Runs that do not come to their end.
 
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use super::place::{Place, code, error, text};
+use super::signal::send;
 use super::stage::{GAS, is_judged};
 
 /// So dissipative that exact dynamics collapses without a cure.
@@ -70,7 +71,7 @@ fn an_interrupt_leaves_what_has_come_to_its_end() {
         assert!(since.elapsed() < Duration::from_secs(60), "the second run does not begin");
         std::thread::sleep(Duration::from_millis(20));
     }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    send("-INT", &child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(code(&output), 130, "{}", error(&output));
     assert_eq!(place.summary("out/gas-compare/hsmc-1")["interrupted"], true);

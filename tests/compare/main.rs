@@ -8,6 +8,8 @@ mod logs;
 #[path = "../place/mod.rs"]
 mod place;
 mod refusals;
+#[path = "../signal/mod.rs"]
+mod signal;
 mod stage;
 
 use std::fs;

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod chance;
+mod steadiness;
 
 use grainflow::comparison::model::{Basis, Compared, Comparison, Difference, Verdict};
 use grainflow::comparison::{Entry, Head, Replica, assemble};

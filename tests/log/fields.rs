@@ -7,20 +7,13 @@ use grainflow::matter::columns::Columns;
 use grainflow::matter::gas::Gas;
 use grainflow::matter::grain::Grain;
 use grainflow::matter::grid::Grid;
-use grainflow::observe::field::{Field, Quantity, field};
+use grainflow::observe::field::{Quantity, field};
 use grainflow::record::reader::read_log;
 use grainflow::record::writer::{LogHeader, LogWriter, Recording};
 use grainflow::space::Vector;
 
-use super::{folder, header};
-
-/// Density and velocity of the sample's grains.
-pub(super) fn fields(grains: Columns<DVec2>, time: f64) -> Vec<Field> {
-    let grid = Grid::new(DVec2::ZERO, DVec2::new(40.0, 20.0), &[2, 2], &[true, false]);
-    let grain = Grain { diameter: 1.0, mass: 1.0 };
-    let gas = Gas::restored(grid, grain, grains, Clock::restored(time, 0.0), 300);
-    [Quantity::Density, Quantity::Velocity].map(|quantity| field(quantity, &gas, &[])).to_vec()
-}
+use super::folder;
+use super::sample::header;
 
 /// What a cell should show, by another way: grains are looked for by their places.
 fn expected_field<V: Vector>(

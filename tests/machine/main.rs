@@ -6,3 +6,5 @@
 mod failures;
 mod place;
 mod refusals;
+#[path = "../signal/mod.rs"]
+mod signal;

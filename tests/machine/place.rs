@@ -86,9 +86,3 @@ impl Said {
         }
     }
 }
-
-/// Sends a signal, such as `-KILL`.
-pub(crate) fn send(signal: &str, child: &Child) {
-    let status = Command::new("kill").args([signal, &child.id().to_string()]).status();
-    assert!(status.is_ok_and(|status| status.success()));
-}

@@ -13,6 +13,7 @@ mod collapse;
 mod corners;
 mod drive;
 mod elastic_gas;
+mod mixtures;
 mod one_bouncing_grain;
 mod reference;
 mod reference_alone;

@@ -1,4 +1,4 @@
-"""Exports a grainflow log into every format and checks what OVITO, VTK and pandas read.
+"""Exports a grainflow log into every format and checks what OVITO, ASE, VTK and pandas read.
 
     python check_exports.py GRAINFLOW LOG [--thinned]
 
@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
+import ase.io
 import numpy as np
 import pandas
 from mcap.reader import make_reader
@@ -44,6 +45,8 @@ class Log:
         self.lower = np.array([float(word) for word in box["lower"].split()])
         self.upper = np.array([float(word) for word in box["upper"].split()])
         self.periodic = [box[f"{axis}.lower"] == "periodic" for axis in "xyz"]
+        sides = [[box[f"{axis}.{side}"] for side in ("lower", "upper")] for axis in "xyz"]
+        self.is_open = np.array(["open" in pair for pair in sides])
         self.dimension = int(self.metadata["dimension"])
 
     def position(self, frame):
@@ -60,8 +63,18 @@ class Log:
         last = self.states[-1]
         ids = np.frombuffer(last.ids, "<u4")
         species = np.frombuffer(last.species, "u1") if last.species else np.zeros(len(ids), "u1")
-        self.radius_of = np.full(int(ids.max()) + 1, scenario_radii[0])
-        self.radius_of[ids] = np.array(scenario_radii)[species]
+        self.species_of = np.zeros(int(ids.max()) + 1, int)
+        self.species_of[ids] = species
+        self.radius_of = np.array(scenario_radii)[self.species_of]
+
+    def inside(self, frame):
+        """Which grains are in the box: all but those that have left it through an open side. Rounding to single precision
+        keeps order, so that no grain of the box is beyond the rounded ends."""
+        axes = slice(self.dimension)
+        ends = [end[axes].astype(np.float32) for end in (self.lower, self.upper)]
+        position = self.position(frame)[:, axes]
+        within = (position >= ends[0]) & (position <= ends[1])
+        return within.all(axis=1), within[:, ~self.is_open[axes]].all()
 
 
 def scenario_radii(path):
@@ -123,6 +136,39 @@ def check_ovito(path, log, checks, name):
         checks.that(time is not None and np.isclose(time, log.times[frame], rtol=1e-12), f"{name}: time {time}")
 
 
+def check_ase(path, log, checks, name):
+    """All frames of an extended XYZ file as ASE reads it, told by nothing but its name and by the name of its format."""
+    for more in ({}, {"format": "extxyz"}):
+        frames = ase.io.read(path, index=":", **more)
+        checks.that(len(frames) == len(log.frames), f"{name}: {len(frames)} frames of {len(log.frames)}")
+        for frame in picked(log):
+            atoms, ids = frames[frame], log.frames[frame]["id"]
+            checks.that(len(atoms) == len(ids), f"{name}: {len(atoms)} grains of {len(ids)} in frame {frame}")
+            if len(ids) == 0:
+                continue
+            checks.that(np.array_equal(atoms.arrays["id"], ids), f"{name}: ids of frame {frame}")
+            checks.that(np.array_equal(atoms.numbers, log.species_of[ids] + 1), f"{name}: species of frame {frame}")
+            checks.that(np.allclose(atoms.arrays["radius"], log.radii(frame)), f"{name}: radii of frame {frame}")
+            close = np.allclose(atoms.positions, log.position(frame), rtol=2e-7, atol=1e-7)
+            checks.that(close, f"{name}: positions of frame {frame}")
+            checks.that(np.allclose(atoms.arrays["velo"], log.velocity(frame), rtol=2e-7), f"{name}: velocities")
+            checks.that(list(atoms.pbc) == log.periodic, f"{name}: periodic axes {atoms.pbc}")
+            checks.that(np.isclose(atoms.info["Time"], log.times[frame], rtol=1e-12), f"{name}: time of frame {frame}")
+
+
+def check_ase_states(path, log, checks):
+    """The last state, with its spins where grains have them."""
+    atoms, last = ase.io.read(path, index=-1, format="extxyz"), log.states[-1]
+    order = np.argsort(np.frombuffer(last.ids, "<u4"))
+    position = np.frombuffer(last.positions, "<f8").reshape(-1, last.dimension)[order]
+    checks.that(np.array_equal(atoms.positions[:, : last.dimension], position), "ase: positions of the last state")
+    spins = np.frombuffer(last.spins, "<f8").reshape(len(order), -1)[order] if last.spins else None
+    found = atoms.arrays.get("angular_velocity")
+    checks.that((found is None) == (spins is None), "ase: spins where grains have them")
+    if spins is not None:
+        checks.that(np.array_equal(found[:, 3 - spins.shape[1] :], spins), "ase: spins of the last state")
+
+
 def collection(folder, stem):
     """Times and files of a .pvd."""
     found = ElementTree.parse(folder / f"{stem}.pvd").findall("./Collection/DataSet")
@@ -164,8 +210,8 @@ def check_vti(folder, log, checks):
         column = lambda name: vtk_to_numpy(image.GetCellData().GetArray(name)).astype(float)
         volume = np.prod(np.array(image.GetSpacing())[: log.dimension])
         # Grains that have left the box through an open side count nowhere.
-        position = log.position(frame)[:, : log.dimension]
-        inside = np.all((position >= log.lower[: log.dimension]) & (position <= log.upper[: log.dimension]), axis=1)
+        inside, are_held = log.inside(frame)
+        checks.that(are_held, f"vti: walls and periodic axes hold the grains of frame {frame}")
         stands_for = log.grains[frame] / max(len(inside), 1)
         total = column("number_density").sum() * volume
         checks.that(np.isclose(total, inside.sum() * stands_for, rtol=1e-4), f"vti: {total} grains in frame {frame}")
@@ -219,6 +265,8 @@ def main(program, path, is_thinned):
         check_ovito(export("lammps"), log, checks, "lammps")
         xyz = export("xyz")
         check_ovito(xyz, log, checks, "xyz")
+        check_ase(xyz.rename(xyz.with_suffix(".xyz")), log, checks, "ase")
+        xyz = xyz.with_suffix(".xyz")
         comment = xyz.read_text().splitlines()[len(log.frames[0]) + 3] if len(log.frames) > 1 else ""
         checks.that(("remark=" in comment) == is_thinned, f"xyz: thinning is told: {comment[:200]}")
         checks.that(("thinned" in export.said) == is_thinned, f"thinning is told: {export.said}")
@@ -227,6 +275,7 @@ def main(program, path, is_thinned):
         check_csv(export("csv"), log, checks)
         if not is_thinned:
             check_states(export, log, checks)
+            check_ase_states(export("xyz", "--states"), log, checks)
         check_part(export, log, checks)
     print(f"{path}: {len(log.frames)} frames, {len(log.states)} states")
     print(f"{checks.passed} passed, {checks.failed} failed")

@@ -1,98 +1,34 @@
 //! Logs that were written when their format was new: they are read for ever, and while the format and the bits of
 //! trajectories stay, the program still writes the same.
 //!
-//! They are made by `cargo test --release --test stored_runs -- --ignored mint`, which leaves those alone that are there;
-//! with `GRAINFLOW_MINT=replace` it writes all of the present format again, as a raised `numerics` asks for.
+//! They are made by `cargo run --release --example golden`, which leaves those alone that are there; with `-- --replace` it
+//! writes all of the present format again, as a raised `numerics` asks for.
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::path::Path;
 
 use glam::{DVec2, DVec3};
 use grainflow::observe::measure::Profile;
 use grainflow::record::contents::RunLog;
 use grainflow::record::reader::{read_log, read_states};
 use grainflow::record::state::SavedState;
+use grainflow::run::{NUMERICS, run};
 use grainflow::run::resume::Resumption;
 use grainflow::run::verify::{Verdict, verify};
-use grainflow::run::{NUMERICS, run};
-use grainflow::scenario::model::EngineKind;
 use grainflow::scenario::{Overrides, parse};
 use grainflow::space::Vector;
 
-/// The newest format; a new one gets a folder of its own, and this one stays.
-const FORMAT: &str = "1";
+use super::mint::{all, folder, place, write};
+
 /// The longest that a golden log may be [bytes].
 const MOST_BYTES: u64 = 24_000;
-/// When its run is stopped [time]: long before its limit, so that measures have taken few samples.
-const END: f64 = 0.5;
-
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("format-{FORMAT}"))
-}
-
-fn place(engine: EngineKind, dimension: usize) -> PathBuf {
-    folder().join(format!("{}-{dimension}d.mcap", engine.name()))
-}
-
-fn all() -> impl Iterator<Item = (EngineKind, usize)> {
-    EngineKind::ALL.into_iter().flat_map(|engine| [2, 3].map(|dimension| (engine, dimension)))
-}
-
-/// A few grains that fall and are poured between walls: as many kinds of messages as there are.
-fn scenario(engine: EngineKind, dimension: usize) -> String {
-    let list = |first: f64, last: f64| {
-        let numbers = (0..dimension).map(|axis| if axis + 1 == dimension { last } else { first });
-        format!("{:?}", numbers.collect::<Vec<f64>>())
-    };
-    let up = ["y", "z"][dimension - 2];
-    let side = if dimension == 2 { "x = \"periodic\"\n" } else { "x = \"periodic\"\ny = \"periodic\"\n" };
-    let place = if dimension == 2 { "[8.0]" } else { "[4.0, 4.0]" };
-    format!(
-        "title = \"Golden\"\ndimension = {dimension}\nseed = 11\ngravity = {}\n\
-         [engine]\nkind = \"{}\"\ncell_size = 2.0\ntime_step = {{ fixed = 0.0625 }}\n[domain]\nsize = {}\n\
-         [boundary]\n{side}{up}.lower = {{ wall = \"rough\" }}\n{up}.upper = \"open\"\n\
-         [particles]\ncount = 12\nrestitution = 0.9\n[initial]\nvelocities = {{ maxwell = 1.0 }}\n\
-         [source]\ncount = 3\nrate = 8.0\nposition = {place}\nwidth = 4.0\nheight = 4.0\nvelocity = {}\n\
-         [run]\ntime = 10.0\n[record]\nevery = 0.25\nstates = 0\nmeasures = [\"energy\", \"density-profile\"]\n",
-        list(0.0, -1.0),
-        engine.name(),
-        list(if dimension == 2 { 16.0 } else { 8.0 }, 30.0),
-        list(0.0, -1.0),
-    )
-}
-
-/// Writes the log of that scenario to `log` as the program does now.
-fn write(engine: EngineKind, dimension: usize, log: &Path) {
-    let overrides = Overrides::default();
-    let text = scenario(engine, dimension);
-    let parsed = parse("golden", &text, &overrides).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let work = tempfile::tempdir().unwrap();
-    let run_folder = work.path().join("run");
-    let stop = AtomicBool::new(false);
-    run(&parsed, &run_folder, false, &stop, &mut |status| stop.store(status.time >= END, Relaxed)).unwrap();
-    fs::copy(run_folder.join("log.mcap"), log).unwrap();
-}
-
-#[test]
-#[ignore = "makes files; cargo test --release --test stored_runs -- --ignored mint"]
-fn mint_golden_logs() {
-    let replaces = std::env::var("GRAINFLOW_MINT").is_ok_and(|word| word == "replace");
-    fs::create_dir_all(folder()).unwrap();
-    for (engine, dimension) in all() {
-        let log = place(engine, dimension);
-        if replaces || !log.exists() {
-            write(engine, dimension, &log);
-        }
-    }
-}
 
 #[test]
 fn every_engine_has_its_golden_logs_and_they_are_small() {
     for (engine, dimension) in all() {
         let log = place(engine, dimension);
-        let remedy = "cargo test --release --test stored_runs -- --ignored mint";
+        let remedy = "cargo run --release --example golden";
         assert!(log.is_file(), "{} is missing: {remedy}", log.display());
         let bytes = fs::metadata(&log).unwrap().len();
         assert!(bytes <= MOST_BYTES, "{}: {bytes} bytes", log.display());
@@ -160,8 +96,7 @@ fn the_present_program_writes_what_the_golden_logs_hold() {
 fn compare_logs(path: &Path, golden: &RunLog, now: &RunLog) {
     let name = path.display();
     for (key, value) in golden.metadata.iter().filter(|(key, _)| *key != "version") {
-        let hint = "if trajectories were meant to change: GRAINFLOW_MINT=replace cargo test --release --test \
-                    stored_runs -- --ignored mint";
+        let hint = "if trajectories were meant to change: cargo run --release --example golden -- --replace";
         assert_eq!(now.metadata.get(key), Some(value), "{name}: {key}; numerics {NUMERICS}; {hint}");
     }
     assert_eq!((&golden.scenario, &golden.walls), (&now.scenario, &now.walls), "{name}");

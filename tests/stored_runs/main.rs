@@ -2,11 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "functions that tests call stop the test like the tests themselves")]
 
+mod boxes;
 mod export;
 mod golden;
+mod mint;
 #[path = "../place/mod.rs"]
 mod place;
 mod replay;
+mod times;
 
 use place::{Place, code, error, text};
 

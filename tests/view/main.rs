@@ -3,6 +3,8 @@
 
 mod index;
 mod server;
+#[path = "../signal/mod.rs"]
+mod signal;
 mod site;
 
 use std::path::{Path, PathBuf};

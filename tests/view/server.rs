@@ -14,6 +14,7 @@ use base64::engine::general_purpose::STANDARD;
 use grainflow::record::reader::read_log;
 use grainflow::view::{Limits, Server, ViewedLog, export, wake};
 
+use super::signal::send;
 use super::{GRAINS, RECORDINGS, get, sample, word};
 
 /// A server that runs until it is dropped.
@@ -176,7 +177,7 @@ fn the_program_prints_its_address_and_ends_with_ctrl_c() {
     let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port.parse().unwrap())).unwrap();
     stream.write_all(&get(&format!("/{path}"), &format!("127.0.0.1:{port}"))).unwrap();
     assert!(answer(&mut stream).starts_with("HTTP/1.1 200"));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    send("-INT", &child);
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
 

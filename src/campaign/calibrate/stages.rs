@@ -170,6 +170,7 @@ mod tests {
         let runs: Vec<_> =
             (1..=4).map(|seed| run::<DVec2>(seed, 60, 2000, |at| (0.01 * at).min(0.8))).collect();
         let stages = stages::<DVec2>(&runs);
+        assert!(stages.len() > 2);
         for stage in &stages {
             let expected = (0.01 * stage.place()).min(0.8);
             // Inside a stage of length factor 1.25 or more, c bends little: 0.01 covers it.

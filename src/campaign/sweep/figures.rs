@@ -9,6 +9,9 @@ use crate::scenario::model::{AnyScenario, Scenario};
 use crate::simulation::figures::{is_of_every_run, numbers};
 use crate::space::Vector;
 
+/// Numbers of every summary that one may want to plot, for messages.
+const USUAL: [&str; 4] = ["temperature", "collisions_per_particle", "simulated_time", "wall_seconds"];
+
 /// The figures that the measures of `scenario` conclude with: what they say of an empty box.
 pub(super) fn own_figures(scenario: &AnyScenario) -> Vec<String> {
     match scenario {
@@ -31,7 +34,11 @@ pub(super) fn check(wished: &[String], own: &[String]) -> Result<(), String> {
     let known = |name: &str| own.iter().any(|own| own == name) || numbers().any(|key| key == name);
     let Some(stranger) = wished.iter().find(|name| !known(name)) else { return Ok(()) };
     let every: Vec<&str> = numbers().collect();
-    let remedy = format!("this scenario has {}, and every run {}", own.join(", "), every.join(", "));
+    let remedy = format!(
+        "this scenario has {}, and every run the numbers of its summary.json, such as {}",
+        own.join(", "),
+        USUAL.join(", ")
+    );
     let names = own.iter().map(String::as_str).chain(every);
     let remedy = did_you_mean(stranger, names, &remedy);
     Err(format!("--figure '{stranger}': no figure of these runs has this name; {remedy}"))
@@ -62,5 +69,6 @@ mod tests {
         let own = ["heap_slope".to_owned()];
         assert_eq!(check(&["heap_slope".to_owned(), "temperature".to_owned()], &own), Ok(()));
         assert!(check(&["heap_slop".to_owned()], &own).unwrap_err().contains("did you mean `heap_slope`?"));
+        assert!(check(&["slope".to_owned()], &own).unwrap_err().ends_with("did you mean `heap_slope`?"));
     }
 }

@@ -5,11 +5,14 @@ use serde_json::{Map, Value, json};
 use super::plan::{Case, Plan};
 use super::power_law::power_law;
 use super::runs::{Ended, Row};
+use crate::comparison::unit_of;
+use crate::observe::measure::Figure;
 use crate::report::{Abscissa, FigureCurve, MeanPoint, SweepCase, SweepFigure, SweepReport};
 use crate::run::NUMERICS;
+use crate::run::series::unit_name;
 use crate::scenario::model::AnyScenario;
-use crate::simulation::figures::is_attribute;
-use crate::statistics::{Estimate, average};
+use crate::simulation::figures::{figure_of, is_attribute, trend_of_runs};
+use crate::statistics::{Estimate, Trend, average};
 
 /// A point of the grid with all its replicas.
 struct GridPoint<'a> {
@@ -17,17 +20,31 @@ struct GridPoint<'a> {
     summaries: Vec<&'a Map<String, Value>>,
 }
 
+/// A figure at a point of the grid.
+struct Mean {
+    value: f64,
+    standard_error: Option<f64>,
+    /// Of that error.
+    degrees_of_freedom: Option<f64>,
+    /// Whether its series is steady in the runs that tested it.
+    trend: Option<Trend>,
+    /// Runs that have it.
+    runs: usize,
+}
+
 impl GridPoint<'_> {
-    /// Mean of a figure over the replicas that have it, and their number.
-    fn mean(&self, figure: &str) -> Option<(Estimate, usize)> {
-        let number = |summary: &Map<String, Value>, key: &str| summary.get(key).and_then(Value::as_f64);
-        let values: Vec<f64> = self.summaries.iter().filter_map(|summary| number(summary, figure)).collect();
-        let mut mean = average(&values)?;
-        if values.len() == 1 {
-            let key = format!("{figure}_standard_error");
-            mean.standard_error = self.summaries.iter().find_map(|summary| number(summary, &key));
-        }
-        Some((mean, values.len()))
+    /// Mean of a figure over the replicas that have it, its error from their scatter; of one run what that states.
+    fn mean(&self, name: &str) -> Option<Mean> {
+        let figures: Vec<Figure> =
+            self.summaries.iter().filter_map(|summary| figure_of(summary, name)).collect();
+        let values: Vec<f64> = figures.iter().filter_map(|figure| figure.value).collect();
+        let Estimate { value, standard_error } = average(&values)?;
+        let (standard_error, degrees_of_freedom) = match &figures[..] {
+            [alone] => (alone.standard_error, alone.degrees_of_freedom),
+            _ => (standard_error, standard_error.map(|_| values.len() as f64 - 1.0)),
+        };
+        let trend = trend_of_runs(figures.iter().filter_map(|figure| figure.trend));
+        Some(Mean { value, standard_error, degrees_of_freedom, trend, runs: values.len() })
     }
 }
 
@@ -104,20 +121,30 @@ fn figure(plan: &Plan, abscissa: &Abscissa, points: &[GridPoint<'_>], name: &str
             curves.push(FigureCurve { name: line, points: Vec::new(), power_law: None });
             curves.len() - 1
         });
-        if let Some((mean, runs)) = point.mean(name) {
+        if let Some(mean) = point.mean(name) {
             let x = place(abscissa, point.case);
-            let Estimate { value, standard_error } = mean;
-            curves[index].points.push(MeanPoint { x, value, standard_error, runs });
+            let Mean { value, standard_error, trend, runs, .. } = mean;
+            curves[index].points.push(MeanPoint { x, value, standard_error, trend, runs });
         }
     }
     for curve in &mut curves {
         curve.points.sort_by(|a, b| a.x.total_cmp(&b.x));
         if abscissa.is_logarithmic() {
-            let points: Vec<_> = curve.points.iter().map(|p| ([p.x, p.value], p.standard_error)).collect();
+            let steady = curve.points.iter().filter(|point| point.is_steady());
+            let points: Vec<_> = steady.map(|p| ([p.x, p.value], p.standard_error)).collect();
             curve.power_law = power_law(&points);
         }
     }
-    SweepFigure { name: name.to_owned(), curves }
+    SweepFigure { name: name.to_owned(), unit: unit(&plan.cases[0].scenario, name), curves }
+}
+
+/// The unit of a figure in the names of `scenario`.
+fn unit(scenario: &AnyScenario, name: &str) -> String {
+    let (dimension, units) = match scenario {
+        AnyScenario::Two(scenario) => (2, &scenario.units),
+        AnyScenario::Three(scenario) => (3, &scenario.units),
+    };
+    Some(unit_name(unit_of(name, dimension), units)).filter(|unit| unit != "1").unwrap_or_default()
 }
 
 /// All that the page, the JSON and the last words tell.
@@ -181,6 +208,7 @@ pub(super) fn json(plan: &Plan, rows: &[Row], report: &SweepReport) -> String {
                 "prefactor": law.prefactor,
                 "largest_deviation": law.largest_deviation,
                 "points": law.points,
+                "points_left_out_as_not_steady": curve.not_steady(),
             }))
         })
     });
@@ -211,8 +239,15 @@ fn point_json(plan: &Plan, point: &GridPoint<'_>) -> Value {
         if is_attribute(key) || key == "seed" || figures.contains_key(key) {
             continue;
         }
-        if let Some((mean, runs)) = point.mean(key) {
-            let mean = json!({"mean": mean.value, "standard_error": mean.standard_error, "runs": runs});
+        if let Some(mean) = point.mean(key) {
+            let mean = json!({
+                "mean": mean.value,
+                "standard_error": mean.standard_error,
+                "degrees_of_freedom": mean.degrees_of_freedom,
+                "steady": mean.trend.map(Trend::is_steady),
+                "trend": mean.trend.filter(|trend| !trend.is_steady()).map(Trend::name),
+                "runs": mean.runs,
+            });
             figures.insert(key.clone(), mean);
         }
     }

@@ -72,7 +72,7 @@ pub struct Options<'a> {
 }
 
 /// How a sweep looks from outside while it goes on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Moment<'a> {
     /// Which case this is about.
     pub case: usize,
@@ -82,6 +82,8 @@ pub struct Moment<'a> {
     pub ended: Option<&'a Ended>,
     /// Its summary, if it ended.
     pub summary: Option<&'a Map<String, Value>>,
+    /// Why it begins although it was finished before, if so: what is missing in its log.
+    pub remade: Option<&'a str>,
 }
 
 /// What a sweep leaves.

@@ -81,7 +81,7 @@ pub(super) fn runs(
     let threads = options.threads.unwrap_or_else(all);
     let pools = pools(threads, options.jobs.min(wanted.len())).map_err(SweepError::Threads)?;
     for k in (0..plan.cases.len()).filter(|k| !wanted.contains(k)) {
-        tell(&Moment { case: k, progress: 1.0, ended: None, summary: None });
+        tell(&Moment { case: k, progress: 1.0, ..Moment::default() });
     }
     let next = AtomicUsize::new(0);
     let rows: Mutex<Vec<Row>> = Mutex::new(standings.iter().map(kept).collect());
@@ -94,11 +94,15 @@ pub(super) fn runs(
                         return;
                     }
                     let case = &plan.cases[k];
+                    if let Standing::Cut(why) = &standings[k] {
+                        tell(&Moment { case: k, remade: Some(why), ..Moment::default() });
+                    }
                     let progress =
-                        &mut |progress: f64| tell(&Moment { case: k, progress, ended: None, summary: None });
+                        &mut |progress: f64| tell(&Moment { case: k, progress, ..Moment::default() });
                     let row = pool.install(|| run(case, &standings[k], options, stop, progress));
                     let ended = Some(&row.ended);
-                    tell(&Moment { case: k, progress: 1.0, ended, summary: Some(&row.summary) });
+                    let summary = Some(&row.summary);
+                    tell(&Moment { case: k, progress: 1.0, ended, summary, ..Moment::default() });
                     locked(rows)[k] = row;
                 }
             });
@@ -128,8 +132,8 @@ fn run(
     progress: &mut (dyn FnMut(f64) + Send),
 ) -> Row {
     let folder = options.out.join(&case.name);
-    // What an interrupted or failed run of the same case left would come again, bit for bit.
-    if *standing == Standing::Unfinished
+    // What the same case has left, interrupted, failed or cut, would come again, bit for bit.
+    if matches!(standing, Standing::Unfinished | Standing::Cut(_))
         && let Err(error) = take_away_run(&folder)
     {
         let message = format!("cannot remove the unfinished run {}: {error}", folder.display());

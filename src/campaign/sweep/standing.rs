@@ -7,9 +7,9 @@ use serde_json::{Map, Value};
 
 use crate::record::LOG;
 use crate::record::error::LogError;
-use crate::record::reader::read_origin;
+use crate::record::reader::{Origin, read_origin};
 use crate::record::summary::{failure, summary_in};
-use crate::run::NUMERICS;
+use crate::run::{NUMERICS, OBSERVATION, OBSERVATION_KEY};
 use crate::scenario::model::AnyScenario;
 
 /// The version that writes.
@@ -24,6 +24,8 @@ pub(super) enum Standing {
     Finished(Map<String, Value>),
     /// The beginning of the same run, which was interrupted or failed.
     Unfinished,
+    /// The same run, which was finished; its log is no longer whole, and what is missing.
+    Cut(String),
     /// Something else, and what tells so.
     Foreign(String),
 }
@@ -38,7 +40,10 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
         Ok(false) => {}
         Err(error) => return Standing::Foreign(format!("cannot be read: {error}")),
     }
-    let (metadata, text) = match read_origin(&folder.join(LOG)) {
+    let Origin { metadata, scenario: text, last_hash, cut_off } = match read_origin(&folder.join(LOG)) {
+        Ok(Origin { scenario, cut_off: Some(cut_off), .. }) if scenario.is_empty() => {
+            return Standing::Foreign(format!("does not say which run it is of: {cut_off}"));
+        }
         Ok(origin) => origin,
         Err(LogError::Read { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
             return Standing::Foreign("holds no log".to_owned());
@@ -52,6 +57,12 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
     if let Some(other) = other_program(of_log("version"), of_log("numerics")) {
         return Standing::Foreign(other);
     }
+    let observation = metadata.get(OBSERVATION_KEY).map_or("1", String::as_str);
+    if observation != OBSERVATION.to_string() {
+        return Standing::Foreign(format!(
+            "was written by a release whose figures mean other things: observation {observation}, this is {OBSERVATION}"
+        ));
+    }
     let summary = match summary_in(folder) {
         Ok(Some(summary)) => summary,
         Ok(None) => return Standing::Unfinished,
@@ -63,6 +74,12 @@ pub(super) fn standing(folder: &Path, scenario: &AnyScenario) -> Standing {
     }
     if summary.get("interrupted") != Some(&Value::Bool(false)) || failure(&summary).is_some() {
         return Standing::Unfinished;
+    }
+    if let Some(cut_off) = cut_off {
+        return Standing::Cut(cut_off);
+    }
+    if summary.get("state_hash").and_then(Value::as_str) != Some(&last_hash) {
+        return Standing::Foreign("has a summary and a log that end in different states".to_owned());
     }
     Standing::Finished(summary)
 }

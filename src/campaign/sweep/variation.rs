@@ -113,8 +113,12 @@ fn counted(values: usize) -> String {
     if values == 1 { "1 value".to_owned() } else { format!("{values} values") }
 }
 
-/// The values of `a, b, c`; a comma may follow the last.
+/// The values of `a, b, c`, each as it is written: a list of TOML, or one whose texts may stand without quotation marks,
+/// as those of `--set`. A comma may follow the last.
 fn listed(list: &str) -> Result<Vec<String>, String> {
+    if let Ok(toml_edit::Value::Array(array)) = format!("[{list}]").parse() {
+        return Ok(array.iter().map(|value| value.clone().decorated("", "").to_string()).collect());
+    }
     let mut values: Vec<String> =
         split(list, ',')?.into_iter().map(|value| value.trim().to_owned()).collect();
     if values.last().is_some_and(String::is_empty) {
@@ -154,11 +158,17 @@ fn spread(range: &str, place: impl Fn(f64, f64, f64) -> f64) -> Result<Vec<Strin
     Ok((0..count).map(|k| rounded(value(k))).collect())
 }
 
-/// `text` cut at every `mark` that stands outside of brackets and quotation marks.
+/// `text` cut at every `mark` that stands outside of brackets and quotation marks; as in TOML, a backslash between double
+/// quotation marks takes its meaning from the sign behind it.
 fn split(text: &str, mark: char) -> Result<Vec<&str>, String> {
     let (mut parts, mut start, mut depth, mut quote) = (Vec::new(), 0, 0_i32, None);
+    let mut is_escaped = false;
     for (at, c) in text.char_indices() {
+        if std::mem::take(&mut is_escaped) {
+            continue;
+        }
         match (quote, c) {
+            (Some('"'), '\\') => is_escaped = true,
             (Some(open), c) if c == open => quote = None,
             (Some(_), _) => {}
             (None, '"' | '\'') => quote = Some(c),
@@ -172,7 +182,11 @@ fn split(text: &str, mark: char) -> Result<Vec<&str>, String> {
         }
     }
     if depth != 0 || quote.is_some() {
-        return Err(format!("a bracket or a quotation mark of `{}` has no partner", text.trim()));
+        return Err(format!(
+            "a bracket or a quotation mark of `{}` has no partner; where the shell cuts a list at its blanks, quote the \
+             whole: --vary 'key=[a, b]'",
+            text.trim()
+        ));
     }
     parts.push(&text[start..]);
     Ok(parts)
@@ -194,6 +208,15 @@ mod tests {
     fn lists_keep_their_texts() {
         assert_eq!(values("a.b=[1, 2.50 ,3]"), ["1", "2.50", "3"]);
         assert_eq!(values("a = [[1, 2], { b = 'x,]' }, hsmc,]"), ["[1, 2]", "{ b = 'x,]' }", "hsmc"]);
+        assert_eq!(values("a = [[1, 2], { b = 'x,]' },]"), ["[1, 2]", "{ b = 'x,]' }"]);
+    }
+
+    #[test]
+    fn texts_of_toml_may_hold_any_sign() {
+        assert_eq!(values(r#"title=["a\"b","c"]"#), [r#""a\"b""#, r#""c""#]);
+        assert_eq!(values(r#"title=["a,]\\", 'b\', bare]"#), [r#""a,]\\""#, r#"'b\'"#, "bare"]);
+        let both = Variation::parse(r#"title=["a\"] + b=[","x"] + c=[1, 2]"#).unwrap();
+        assert_eq!(both.settings(1).collect::<Vec<_>>(), [("title", r#""x""#), ("c", "2")]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::bad_input;
 use crate::cli::{Exit, print_text};
+use crate::number::exact;
 use crate::record::overview::{Overview, overview};
 
 /// Metadata that the first lines tell, in this order.
@@ -62,7 +63,9 @@ fn line(name: &str, value: String) -> String {
 
 fn recordings(found: &Overview) -> String {
     match (found.times.first(), found.times.last()) {
-        (Some(first), Some(last)) => format!("{}, from t = {first} to {last}", found.times.len()),
+        (Some(first), Some(last)) => {
+            format!("{}, from t = {} to {}", found.times.len(), exact(*first), exact(*last))
+        }
         _ => "none".to_owned(),
     }
 }
@@ -79,7 +82,7 @@ fn states(found: &Overview) -> String {
     match found.states.len() {
         0 => "none".to_owned(),
         number => {
-            let times: Vec<String> = found.states.iter().map(|(time, _)| time.to_string()).collect();
+            let times: Vec<String> = found.states.iter().map(|(time, _)| exact(*time)).collect();
             format!("{number}, at t = {}", times.join(", "))
         }
     }

@@ -10,11 +10,12 @@ use console::Term;
 use super::{Exit, bad_input};
 use crate::cli::complain;
 use crate::cli::run::{STOP, prepare};
+use crate::number::plain;
 use crate::record::contents::{Frame, Walls};
 use crate::record::overview::overview;
 use crate::record::walk::each_frame;
 use crate::replay::selection::Selection;
-use crate::replay::text_picture::Canvas;
+use crate::replay::text_picture::{Canvas, Colours};
 use crate::replay::{scenario_of, walls_of};
 use crate::stopwatch::Stopwatch;
 
@@ -38,7 +39,7 @@ pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
         return Exit::RunFailed;
     }
     let mut picker = selection.picker();
-    film.show(BEGIN);
+    film.switch(BEGIN);
     let read = each_frame(log, &mut |_, frame| {
         if picker.takes(frame.time) {
             film.wait((frame.time - begin) / speed);
@@ -49,7 +50,7 @@ pub(super) fn play(log: &Path, selection: Selection, speed: f64) -> Exit {
             false => ControlFlow::Continue(()),
         }
     });
-    film.show(END);
+    film.switch(END);
     // The last picture stays on the usual screen.
     let last = std::mem::take(&mut film.last);
     film.show(&last);
@@ -84,7 +85,7 @@ fn film_of(log: &Path, selection: Selection, speed: f64) -> Result<(Film, f64), 
     let film = Film {
         walls: walls_of(&scenario),
         diameter: scenario.diameter(),
-        is_coloured: std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
+        screen: Screen::of(|name| std::env::var(name).ok()),
         watch: Stopwatch::default(),
         last: String::new(),
         failure: None,
@@ -92,11 +93,41 @@ fn film_of(log: &Path, selection: Selection, speed: f64) -> Result<(Film, f64), 
     Ok((film, begin))
 }
 
+/// What a terminal is able to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Screen {
+    colours: Colours,
+    /// Whether text can be put anywhere: a terminal without that is a printer.
+    has_places: bool,
+}
+
+impl Screen {
+    /// As the environment says: `variable` gives the value of TERM, COLORTERM and NO_COLOR.
+    fn of(variable: impl Fn(&str) -> Option<String>) -> Self {
+        let term = variable("TERM").unwrap_or_default();
+        let is_printer = term.is_empty() || term == "dumb";
+        let true_colour =
+            ["truecolor", "24bit"].contains(&variable("COLORTERM").unwrap_or_default().as_str());
+        let colours = match term.as_str() {
+            _ if is_printer || variable("NO_COLOR").is_some_and(|value| !value.is_empty()) => Colours::Plain,
+            _ if true_colour => Colours::True,
+            term if MONOCHROME.iter().any(|name| term.starts_with(name)) => Colours::Plain,
+            term if term.ends_with("-direct") => Colours::True,
+            term if term.contains("256color") => Colours::TwoHundred,
+            _ => Colours::Eight,
+        };
+        Screen { colours, has_places: !is_printer }
+    }
+}
+
+/// Beginnings of names of terminals without colours.
+const MONOCHROME: [&str; 5] = ["vt1", "vt2", "vt3", "vt4", "vt5"];
+
 /// What is on the screen.
 struct Film {
     walls: Walls,
     diameter: f64,
-    is_coloured: bool,
+    screen: Screen,
     watch: Stopwatch,
     /// The last picture, as lines.
     last: String,
@@ -115,12 +146,24 @@ impl Film {
     fn draw(&mut self, frame: &Frame) {
         let (lines, columns) = Term::stdout().size();
         let room = usize::from(lines).saturating_sub(2).max(1);
-        let canvas = Canvas::new(&self.walls, usize::from(columns), room, self.is_coloured);
+        let canvas = Canvas::new(&self.walls, usize::from(columns), room, self.screen.colours);
         let mut lines = canvas.draw(frame, self.diameter);
-        lines.push(format!("t = {:.4}, {} grains", frame.time, frame.grains));
+        lines.push(format!("t = {}, {} grains", plain(frame.time, 6), frame.grains));
+        if !self.screen.has_places {
+            // Each picture below the last one, of which nothing remains to be shown at the end.
+            self.show(&(lines.join("\n") + "\n"));
+            return;
+        }
         let next = format!("{CLEAR_LINE}\r\n");
         self.show(&format!("{HOME}{}{CLEAR_LINE}{CLEAR_BELOW}", lines.join(&next)));
         self.last = lines.join("\n") + "\n";
+    }
+
+    /// Goes to the other screen of the terminal, or back, where it has one.
+    fn switch(&mut self, to: &str) {
+        if self.screen.has_places {
+            self.show(to);
+        }
     }
 
     fn show(&mut self, text: &str) {
@@ -128,5 +171,34 @@ impl Film {
         if let Err(failure) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
             self.failure.get_or_insert(failure);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_gets_no_more_than_it_says_it_has() {
+        let screen = |term: &str, colorterm: &str, no_color: &str| {
+            let screen = Screen::of(|name| {
+                let value = match name {
+                    "TERM" => term,
+                    "COLORTERM" => colorterm,
+                    _ => no_color,
+                };
+                (!value.is_empty()).then(|| value.to_owned())
+            });
+            (screen.colours, screen.has_places)
+        };
+        assert_eq!(screen("dumb", "", ""), (Colours::Plain, false));
+        assert_eq!(screen("dumb", "truecolor", ""), (Colours::Plain, false));
+        assert_eq!(screen("", "", ""), (Colours::Plain, false));
+        assert_eq!(screen("vt100", "", ""), (Colours::Plain, true));
+        assert_eq!(screen("linux", "", ""), (Colours::Eight, true));
+        assert_eq!(screen("xterm", "", ""), (Colours::Eight, true));
+        assert_eq!(screen("xterm-256color", "", ""), (Colours::TwoHundred, true));
+        assert_eq!(screen("xterm-256color", "truecolor", ""), (Colours::True, true));
+        assert_eq!(screen("xterm-256color", "24bit", "1"), (Colours::Plain, true));
     }
 }

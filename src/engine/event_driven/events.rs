@@ -2,6 +2,7 @@
 
 use super::body::{Contact, Event, Face, Plan};
 use super::collapse::{cured_restitution, turn_relative_velocity};
+use super::rules::Cure;
 use super::world::World;
 use crate::engine::EngineError;
 use crate::engine::report::IMPACT_BINS;
@@ -106,29 +107,37 @@ impl<V: Vector> World<V> {
         match self.watch.note(row, body.collisions, self.now, span) {
             None => Ok(()),
             Some(collisions) => {
-                let (cure, value) = self.remedy();
+                let remedy = self.remedy();
                 Err(EngineError::Collapse {
                     id: self.ids[row as usize],
                     collisions,
                     span,
                     seed: self.laws.seed,
                     time: self.origin.time() + self.now,
-                    cure,
-                    value,
+                    remedy,
                 })
             }
         }
     }
 
-    /// Key and value of a cure. Grains that lie collide all the time, which a contact time would take for lasting
-    /// contacts; a speed that did not do wants to be larger.
-    fn remedy(&self) -> (&'static str, f64) {
-        let drop = self.laws.gravity.length() * self.laws.largest_diameter();
-        match self.laws.cure.elastic_below {
-            Some(speed) => ("elastic_below", 2.0 * speed),
-            None if self.falls => ("elastic_below", 0.05 * drop.sqrt()),
-            None => ("contact_time", 1e-3 * self.pace.time_between_events(self.bodies.len())),
+    /// A cure that goes on where this one did not do. Under gravity it is no less than what has been tried. A contact time alone
+    /// is none there: it would take the collisions of grains that lie for lasting contacts.
+    fn remedy(&self) -> Cure {
+        let cure = self.laws.cure;
+        let stronger = Cure {
+            elastic_below: cure.elastic_below.map(|speed| 2.0 * speed),
+            contact_time: cure.contact_time.map(|time| 10.0 * time),
+            rotation: cure.rotation,
+        };
+        let (gravity, boundary) = (self.laws.gravity, &self.laws.boundary);
+        if (0..V::DIMENSION).any(|axis| gravity[axis] != 0.0 && !boundary.is_periodic(axis)) {
+            let tried = Cure::at_rest(gravity.length(), self.laws.largest_diameter());
+            // What lacks a part of it is completed first.
+            let is_less = tried.or_more(cure) != cure;
+            return if is_less { cure.or_more(tried) } else { stronger };
         }
+        let short = 1e-3 * self.pace.time_between_events(self.bodies.len());
+        stronger.or_more(Cure { contact_time: Some(short), ..Cure::default() })
     }
 
     /// Time since the grain in `row` last collided, where a cure asks for it [time].

@@ -361,3 +361,7 @@ fn neighbours<V: Vector>(grid: &Grid<V>, cell: u32) -> impl Iterator<Item = (usi
         grid.neighbour(coordinates, place / 2, place % 2 == 1).map(|other| (place, other))
     })
 }
+
+#[cfg(test)]
+#[path = "cell_collisions_tests.rs"]
+mod tests;

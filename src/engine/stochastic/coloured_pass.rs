@@ -184,6 +184,18 @@ fn colours_in_order(dimension: usize, order: PhaseStreams) -> Vec<u32> {
     colours
 }
 
+/// `cells`, which are in rising order, as they come to their turn where one thread serves them.
+#[cfg(test)]
+pub(crate) fn in_turn<V: Vector>(grid: &Grid<V>, cells: &[u32], order: PhaseStreams) -> Vec<u32> {
+    let parities: Vec<Vec<u32>> = (0..V::DIMENSION).map(|axis| parities(grid, axis)).collect();
+    let colour = |cell: u32| -> u32 {
+        let at = grid.coordinates(cell);
+        (0..V::DIMENSION).map(|axis| parities[axis][at[axis] as usize] << axis).sum()
+    };
+    let of_colour = |turn: u32| cells.iter().copied().filter(move |&cell| colour(cell) == turn);
+    colours_in_order(V::DIMENSION, order).into_iter().flat_map(of_colour).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -39,3 +39,28 @@ impl Displacement {
         (length > 0.0).then(|| direction * (distance / length))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::stochastic::laws::DenseGas;
+    use crate::engine::stochastic::trial::{DENSE, laws};
+    use glam::DVec2;
+
+    #[test]
+    fn a_collision_displaces_by_a_diameter_along_what_the_rule_says() {
+        let (change, after) = (DVec2::new(0.3, -0.4), DVec2::new(-6.0, 8.0));
+        let way = |dense: Option<DenseGas>| Displacement::of(&laws(dense)).shift(change, after);
+        assert_eq!(way(None), None);
+        let along_change = way(Some(DENSE)).unwrap();
+        assert!((along_change - DVec2::new(0.6, -0.8)).length() < 1e-15);
+        let corrected = DenseGas { transfer: Transfer::Corrected, displacement_ratio: 0.75, ..DENSE };
+        let along_velocity = way(Some(corrected)).unwrap();
+        assert!((along_velocity - DVec2::new(-0.45, 0.6)).length() < 1e-15);
+    }
+
+    #[test]
+    fn a_collision_that_changes_nothing_displaces_nothing() {
+        assert_eq!(Displacement::of(&laws(Some(DENSE))).shift(DVec2::ZERO, DVec2::X), None);
+    }
+}

@@ -135,7 +135,8 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
     /// A flight that ends near or beyond an edge: wraps, walls and open sides.
     ///
     /// At most one hit per axis and step; a second one on the same axis brings the grain to rest at
-    /// the wall (an even number of reversals would make a rough floor frictionless).
+    /// the wall (an even number of reversals would make a rough floor frictionless). The wall then carries it for the
+    /// rest of the step: what gravity would give the grain along that axis, m g t, goes into the wall.
     #[cold]
     #[inline(never)]
     pub(crate) fn fly_to_the_edge(
@@ -166,7 +167,9 @@ impl<'a, V: Vector, R: Restitution> Flights<'a, V, R> {
                 let random = random.get_or_insert_with(|| self.wall_streams.stream(u64::from(id)));
                 self.reflect(&mut grain, &meeting, self.duration - left, random);
             }
-            momentum[meeting.axis][meeting.side] += (before - grain.velocity) * self.laws.grain.mass;
+            let carried = if resting[meeting.axis] { self.laws.gravity[meeting.axis] * left } else { 0.0 };
+            let given = before - grain.velocity + V::along(meeting.axis, carried);
+            momentum[meeting.axis][meeting.side] += given * self.laws.grain.mass;
         }
         self.drift(&mut grain, left, &resting);
         self.settle_at_the_edges(&mut grain);
@@ -358,8 +361,23 @@ mod tests {
         assert_eq!((end.position.y, end.velocity.y), (0.0, 0.0));
         // One reversal only: the grain goes back along the floor.
         assert!((end.position.x - 0.4).abs() < 1e-15 && end.velocity.x == -0.3);
-        // The wall takes the momentum change of the grain apart from what gravity gave.
-        assert!((momentum[1][0].x - 2.0 * 0.6).abs() < 1e-14);
+        // The wall takes the momentum change of the grain and, all along, its weight: 2·(−0.1 − 1·2).
+        assert!((momentum[1][0] - DVec2::new(2.0 * 0.6, -2.0 * 2.1)).length() < 1e-14);
+    }
+
+    #[test]
+    fn a_wall_carries_the_grain_that_rests_on_it() {
+        let floor = wall(WallKind::Smooth, 0.5);
+        let (end, momentum) =
+            fly(&laws(1.0, floor, Face::Open), 0.25, DVec2::new(1.0, 0.0), DVec2::new(0.3, 0.0));
+        assert_eq!((end.position, end.velocity), (DVec2::new(1.075, 0.0), DVec2::new(0.3, 0.0)));
+        // m g t on the floor.
+        assert_eq!(momentum[1][0], DVec2::new(0.0, -2.0 * 0.25));
+        // Hung from a ceiling by gravity that points upwards: the weight is the ceiling's.
+        let (end, momentum) =
+            fly(&laws(-1.0, Face::Open, floor), 0.25, DVec2::new(1.0, 10.0), DVec2::new(0.3, 0.0));
+        assert_eq!(end.velocity, DVec2::new(0.3, 0.0));
+        assert_eq!(momentum[1][1], DVec2::new(0.0, 2.0 * 0.25));
     }
 
     #[test]

@@ -24,6 +24,8 @@ mod relative_speeds;
 pub mod rules;
 mod tally;
 mod time_step;
+#[cfg(test)]
+mod trial;
 mod wishes;
 
 use crate::engine::cell_counts::CellCount;

@@ -186,3 +186,7 @@ impl<V: Vector> Wishes<'_, V> {
             && !(is_bounded && entered.any(|cell| most(cell) > self.places.capacity))
     }
 }
+
+#[cfg(test)]
+#[path = "wishes_tests.rs"]
+mod tests;

@@ -6,6 +6,9 @@ use mcap::records::{ChunkIndex, Record};
 use super::head::Head;
 use super::records::Records;
 use crate::record::error::LogError;
+use crate::record::scan::Fault;
+use crate::record::schema::measures::{MeasuresMessage, TIME};
+use crate::record::time_scale::tell_times;
 
 /// The `rank`-th message of its channel in a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +22,8 @@ pub(super) struct Spot {
 /// Where a frame stands, and which recording it belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FramePlace {
-    /// When it was taken [tick].
-    pub(super) tick: u64,
+    /// When it was taken, to a tick of the log where the index says it [time].
+    pub(super) time: f64,
     /// Number of its row of the series.
     pub(super) recording: u32,
     pub(super) spot: Spot,
@@ -37,21 +40,29 @@ pub(super) struct Places {
     pub(super) states: Vec<Spot>,
     /// Where the chunk begins that tells of the walls [byte].
     pub(super) walls: Option<u64>,
+    /// `[recording]`: its time; empty where the index was not made here [time].
+    times: Vec<f64>,
     /// Places in the sequence of recordings and, until they are paired, of frames.
     sequences: [Vec<u32>; 2],
     /// Messages of measures, particles and states in the chunk that is being read.
     ranks: [u32; 3],
 }
 
+/// What the index of a file is good for.
+pub(super) enum Indexed {
+    /// It says where everything stands, and when it was taken.
+    Whole(Places),
+    /// Its ticks are too coarse to say when: the messages have to.
+    WithoutTimes,
+    /// It does not fit together.
+    Unfit,
+}
+
 impl Places {
-    /// What the index of the file says; `None` where it does not fit together.
-    pub(super) fn by_summary(
-        summary: &Summary,
-        records: &Records,
-        head: &Head,
-    ) -> Result<Option<Self>, LogError> {
+    /// What the index of the file says.
+    pub(super) fn by_summary(summary: &Summary, records: &Records, head: &Head) -> Result<Indexed, LogError> {
         let mut places = Places::default();
-        let mut ticks = Vec::new();
+        let (mut ticks, mut frame_ticks) = (Vec::new(), Vec::new());
         let mut chunks: Vec<&ChunkIndex> = summary.chunk_indexes.iter().collect();
         chunks.sort_by_key(|chunk| chunk.chunk_start_offset);
         for index in chunks {
@@ -66,7 +77,7 @@ impl Places {
             if ![head.measures, head.particles, head.states].into_iter().any(holds) {
                 continue;
             }
-            let Some(entries) = message_entries(index, records)? else { return Ok(None) };
+            let Some(entries) = message_entries(index, records)? else { return Ok(Indexed::Unfit) };
             for Entries { channel, ticks: of_channel } in entries {
                 for (rank, tick) in of_channel.into_iter().enumerate() {
                     let spot = Spot { chunk, rank: rank as u32 };
@@ -77,7 +88,9 @@ impl Places {
                         }
                         id if id == head.particles => {
                             let recording = places.frames.len() as u32;
-                            places.frames.push(FramePlace { tick, recording, spot });
+                            let time = tick as f64 / head.time_scale();
+                            places.frames.push(FramePlace { time, recording, spot });
+                            frame_ticks.push(tick);
                         }
                         id if id == head.states => places.states.push(spot),
                         _ => {}
@@ -86,9 +99,11 @@ impl Places {
             }
         }
         // Message n of the one belongs to message n of the other: in a log of which parts were lost, that is not so.
-        let pairs = places.frames.len() == ticks.len()
-            && places.frames.iter().zip(&ticks).all(|(frame, tick)| frame.tick == *tick);
-        Ok(pairs.then_some(places))
+        Ok(match frame_ticks == ticks {
+            true if tell_times(&ticks) => Indexed::Whole(places),
+            true => Indexed::WithoutTimes,
+            false => Indexed::Unfit,
+        })
     }
 
     /// The chunk at `start` is the one that follows.
@@ -98,33 +113,40 @@ impl Places {
     }
 
     /// Takes note of a record of the chunk that was begun last.
-    pub(super) fn add(&mut self, record: &Record<'_>, head: &Head) {
-        let Record::Message { header, .. } = record else { return };
+    pub(super) fn add(&mut self, record: &Record<'_>, head: &Head) -> Result<(), Fault> {
+        let Record::Message { header, data } = record else { return Ok(()) };
         let chunk = self.chunks.len() as u32 - 1;
         let channels = [head.measures, head.particles, head.states];
-        let Some(kind) = channels.iter().position(|id| *id == Some(header.channel_id)) else { return };
+        let Some(kind) = channels.iter().position(|id| *id == Some(header.channel_id)) else {
+            return Ok(());
+        };
         let spot = Spot { chunk, rank: self.ranks[kind] };
         self.ranks[kind] += 1;
         match kind {
             0 => {
                 self.recordings.push(spot);
                 self.sequences[0].push(header.sequence);
+                let message = MeasuresMessage::decode(data, &[TIME]).map_err(Fault::damage)?;
+                self.times.push(message.values[0]);
             }
             1 => {
-                self.frames.push(FramePlace { tick: header.log_time, recording: 0, spot });
+                self.frames.push(FramePlace { time: f64::NAN, recording: 0, spot });
                 self.sequences[1].push(header.sequence);
             }
             _ => self.states.push(spot),
         }
+        Ok(())
     }
 
-    /// Gives every frame its recording; a frame whose recording was lost is left out.
+    /// Gives every frame its recording and the time of that; a frame whose recording was lost is left out.
     pub(super) fn pair(&mut self) {
         let [recordings, frames] = std::mem::take(&mut self.sequences);
+        let times = std::mem::take(&mut self.times);
         let mut paired = Vec::with_capacity(frames.len());
         for (place, sequence) in self.frames.iter().zip(frames) {
             if let Ok(recording) = recordings.binary_search(&sequence) {
-                paired.push(FramePlace { recording: recording as u32, ..*place });
+                let time = times[recording];
+                paired.push(FramePlace { time, recording: recording as u32, ..*place });
             }
         }
         self.frames = paired;

@@ -5,13 +5,13 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use mcap::Summary;
 use mcap::records::{Record, op};
 use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader, SummaryReaderOptions};
+use mcap::{McapError, Summary};
 
 use crate::record::error::LogError;
 use crate::record::recover::chunk_records;
-use crate::record::scan::{self, Fault, length_limit};
+use crate::record::scan::{self, Fault, UNREAD_COMPRESSION, length_limit};
 
 /// Kind and length in front of every record [byte].
 const PREFIX: u64 = 9;
@@ -82,8 +82,12 @@ impl Records {
 
     /// What the chunk with this `body`, found at `start`, holds.
     pub(super) fn unpack(&self, start: u64, body: &[u8]) -> Result<Vec<Record<'static>>, LogError> {
-        let records = chunk_records(body, length_limit(self.length));
-        records.ok_or_else(|| self.damage(start, "the checksum of a chunk does not hold"))
+        chunk_records(body, length_limit(self.length)).map_err(|error| match error {
+            McapError::UnsupportedCompression(ref name) if name == UNREAD_COMPRESSION => {
+                Fault::from(error).at(&self.path, start)
+            }
+            _ => self.damage(start, "the checksum of a chunk does not hold"),
+        })
     }
 
     pub(super) fn damage(&self, position: u64, reason: impl ToString) -> LogError {

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::reference;
 use crate::comparison::model::{Comparison, Contestant, Cost};
+use crate::number::number;
 use crate::report::escape::escape;
-use crate::report::number::number;
 
 /// The table; nothing where nobody knows what anything cost.
 pub(super) fn html(comparison: &Comparison) -> String {

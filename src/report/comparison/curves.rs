@@ -3,10 +3,10 @@
 use super::judgement::stages;
 use super::{label, labelled, moment, reference};
 use crate::comparison::model::{Compared, Comparison, Difference, TheoryCurve};
+use crate::number::in_words;
 use crate::report::axis::Scale;
 use crate::report::energy_plots::scale_of_times;
 use crate::report::evidence::spread;
-use crate::report::number::in_words;
 use crate::report::other_plots::{capital, is_energy_like};
 use crate::report::plot::{Curve, Ink, Plot, Stroke};
 

@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use super::verdicts::verdict;
 use super::with_unit;
-use crate::comparison::model::{ComparedFigure, Comparison};
+use crate::comparison::model::{ComparedFigure, Comparison, Verdict};
+use crate::number::{figure_text, in_words, number};
 use crate::report::escape::escape;
-use crate::report::number::{in_words, number, with_error};
 use crate::report::other_plots::capital;
+use crate::statistics::Trend;
 
 /// The table; nothing where there are no figures.
 pub(super) fn html(comparison: &Comparison) -> String {
@@ -31,11 +32,18 @@ fn row(comparison: &Comparison, figure: &ComparedFigure) -> String {
     let mut html = format!("<tr><td>{}</td>", escape(&name));
     for place in 0..comparison.contestants.len() {
         let value = figure.values.get(place).copied().flatten();
-        let text =
-            value.map_or_else(|| "–".to_owned(), |value| with_error(value.value, value.standard_error));
+        let trend = figure.trends.get(place).copied().flatten();
+        let text = value
+            .map_or_else(|| "–".to_owned(), |value| figure_text(value.value, value.standard_error, trend));
         let difference = figure.differences.get(place).and_then(Option::as_ref);
+        // What is not steady here says so in place of its number already.
         let verdict = difference
-            .map(verdict)
+            .filter(|of| of.verdict != Verdict::NotSteady || trend.is_none_or(Trend::is_steady))
+            .map(
+                |of| {
+                    if of.verdict == Verdict::NotSteady { ("borderline", "no verdict") } else { verdict(of) }
+                },
+            )
             .map_or_else(String::new, |(class, word)| format!("<br><span class=\"{class}\">{word}</span>"));
         let _ = write!(html, "<td class=\"number\">{}{verdict}</td>", escape(&text));
     }

@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::{label, moment, with_unit};
 use crate::comparison::model::Comparison;
+use crate::number::number;
 use crate::observe::measure::Dimension;
 use crate::record::contents::Frame;
 use crate::report::colour::ColourMap;
 use crate::report::escape::escape;
 use crate::report::evidence::spread;
-use crate::report::number::number;
 use crate::report::picture::picture;
 use crate::report::plot::colour_bar;
 use crate::report::scene::Scene;

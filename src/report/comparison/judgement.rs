@@ -28,12 +28,14 @@ pub struct Judgement {
     pub differing: Vec<String>,
     /// Quantities without errors to judge by.
     pub unknown: usize,
+    /// A sentence for each figure that is not steady, in the engine or in the reference.
+    pub not_steady: Vec<String>,
 }
 
 impl Judgement {
     /// Quantities that were compared.
     pub fn quantities(&self) -> usize {
-        self.agreeing + self.differing.len() + self.unknown
+        self.agreeing + self.differing.len() + self.unknown + self.not_steady.len()
     }
 }
 
@@ -54,6 +56,9 @@ pub fn judgements(comparison: &Comparison) -> Vec<Judgement> {
                 agreeing: of(Verdict::Agrees).count(),
                 differing: differing.iter().map(|finding| finding.difference.sentence.clone()).collect(),
                 unknown: of(Verdict::Unknown).count(),
+                not_steady: of(Verdict::NotSteady)
+                    .map(|finding| finding.difference.sentence.clone())
+                    .collect(),
             }
         })
         .collect()
@@ -112,6 +117,6 @@ fn loudness(difference: &Difference) -> f64 {
     match difference.verdict {
         Verdict::Differs => share.max(1.0),
         Verdict::Agrees => share.min(1.0),
-        Verdict::Unknown => -1.0,
+        Verdict::Unknown | Verdict::NotSteady => -1.0,
     }
 }

@@ -9,9 +9,10 @@ mod origin;
 mod summit;
 mod verdicts;
 
-use super::number::{in_words, unit};
 use super::page::{document, section};
+use super::unit::unit;
 use crate::comparison::model::Comparison;
+use crate::number::in_words;
 use crate::observe::measure::{Column, Dimension};
 
 /// The whole page.
@@ -52,5 +53,5 @@ fn with_unit(comparison: &Comparison, name: &str, dimension: Dimension) -> Strin
 /// "t = 3.5", with the unit of time where it has a name.
 fn moment(comparison: &Comparison, time: f64) -> String {
     let unit = if comparison.units[2] == "time" { "" } else { &comparison.units[2] };
-    format!("t = {} {unit}", super::number::number(time, 4)).trim_end().to_owned()
+    format!("t = {} {unit}", crate::number::number(time, 4)).trim_end().to_owned()
 }

@@ -66,6 +66,9 @@ fn card(comparison: &Comparison, judgement: &Judgement) -> String {
     if judgement.unknown > 0 {
         notes.push(format!("{} without errors to judge by", judgement.unknown));
     }
+    if !judgement.not_steady.is_empty() {
+        notes.push(format!("{} not steady, without verdict", judgement.not_steady.len()));
+    }
     let notes: String = notes
         .iter()
         .enumerate()

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::judgement::{Finding, findings};
 use super::{label, moment};
 use crate::comparison::model::{Comparison, Difference, Verdict};
+use crate::number::{NOT_STEADY, in_words};
 use crate::report::escape::escape;
-use crate::report::number::in_words;
 use crate::report::other_plots::capital;
 
 /// The table; nothing where nothing was compared.
@@ -37,7 +37,7 @@ pub(super) fn html(comparison: &Comparison) -> String {
     html.push_str(
         "<p class=\"note\">Two differ where they are farther apart than the threshold: 3 standard errors for a single number, \
          more for a curve, which has many places at which chance could part them, and for errors that few runs tell. Of a profile that was taken at several \
-         times the line tells of the one where they are farthest apart.</p>\n",
+         times the line tells of the one where they are farthest apart. A figure that is not steady in one of the two gets no verdict.</p>\n",
     );
     html
 }
@@ -65,5 +65,6 @@ pub(super) fn verdict(difference: &Difference) -> (&'static str, &'static str) {
         Verdict::Agrees => ("holds", "agrees"),
         Verdict::Differs => ("differs", "differs"),
         Verdict::Unknown => ("borderline", "no errors"),
+        Verdict::NotSteady => ("borderline", NOT_STEADY),
     }
 }

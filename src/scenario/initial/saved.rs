@@ -29,6 +29,13 @@ pub(super) fn gas<V: Vector>(scenario: &Scenario<V>, mut saved: Columns<V>) -> R
         let kind = scenario.engine.kind.name();
         return Err(InitialError::Species { log_has: saved.species.is_some(), kind });
     }
+    if let Some(species) = &saved.species {
+        let mut found = vec![0; kinds];
+        species.iter().for_each(|&species| found[usize::from(species)] += 1);
+        if found != scenario.species_counts {
+            return Err(InitialError::Shares { found, expected: scenario.species_counts.clone() });
+        }
+    }
     if scenario.roughness.is_none() {
         saved.spins = None;
     } else if saved.spins.is_none() {

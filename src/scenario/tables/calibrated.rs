@@ -2,7 +2,7 @@
 
 use crate::law::impact::ImpactLaw;
 use crate::law::piecewise::PiecewiseLinear;
-use crate::scenario::bound::shown;
+use crate::number::exact;
 use crate::scenario::calibration_file::{Curve, ENTRY_PROBABILITY, IMPACT_PARAMETER};
 use crate::scenario::reader::{Found, Section, kind};
 use crate::scenario::schema;
@@ -81,7 +81,7 @@ fn curve(form: &Section<'_>, curve: Curve, forms: &str) -> Option<PiecewiseLinea
         return None;
     }
     if let Some(at) = places.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let (left, right) = (shown(places[at]), shown(places[at + 1]));
+        let (left, right) = (exact(places[at]), exact(places[at + 1]));
         form.mistake(place_key, format!("must rise, but {right} follows {left}; sort the points"));
         return None;
     }

@@ -34,7 +34,15 @@ pub(in crate::scenario) fn read<V: Vector>(root: &Section<'_>, name: &str) -> He
     Head {
         title: label(root, "title", name, 200),
         seed: root.whole("seed", 0, i64::MAX as u64).or(1),
-        gravity: root.vector("gravity", Bound::ANY).or(V::ZERO),
+        gravity: gravity(root),
+    }
+}
+
+/// Zero where there is none; not known where it stands below a table by mistake, so that nothing else misses it.
+fn gravity<V: Vector>(root: &Section<'_>) -> Option<V> {
+    match root.vector("gravity", Bound::ANY) {
+        Found::Missing if root.holds_below("gravity") => None,
+        found => found.or(V::ZERO),
     }
 }
 

@@ -5,6 +5,7 @@ use crate::scenario::model::{RecordPlan, RunLimits, Spacing};
 use crate::scenario::reader::Section;
 use crate::scenario::schema::{self, MEASURES};
 use crate::scenario::tables::channels::{self, Channels, names};
+use crate::simulation::schedule::ROUNDING;
 
 /// The most recordings of one run.
 const MOST_RECORDINGS: u64 = 1_000_000;
@@ -58,7 +59,7 @@ fn spacing(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Spacing> {
         }
     }
     if let (Some(Some(every)), Some(RunLimits { time: Some(time), .. })) = (every, limits)
-        && time / every > MOST_RECORDINGS as f64
+        && time / every * (1.0 - ROUNDING) > MOST_RECORDINGS as f64
     {
         let least = time / MOST_RECORDINGS as f64;
         record
@@ -89,7 +90,7 @@ fn state_every(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Option
         return None;
     }
     if let (Some(every), Some(RunLimits { time: Some(time), .. })) = (every, limits)
-        && time / every > MOST_STATES as f64
+        && time / every * (1.0 - ROUNDING) > MOST_STATES as f64
     {
         let least = time / MOST_STATES as f64;
         record.mistake(KEY, format!("saves more than {MOST_STATES} states; give at least {least}"));

@@ -1,23 +1,17 @@
 //! Cells and steps that are too coarse for what happens in them.
 
-use crate::law::kinetic_theory::mean_free_path;
 use crate::law::restitution::{Constant, RestitutionLaw};
-use crate::scenario::bound::{rounded, shown};
+use crate::number::exact;
+use crate::scenario::bound::rounded;
 use crate::scenario::check::grains_per_cell;
 use crate::scenario::model::{EngineKind, EnskogFactor, Scenario, TimeStep};
-use crate::scenario::{cost, estimate, initial, pace};
+use crate::scenario::{estimate, initial, pace};
 use crate::space::Vector;
 
 /// Fewer cells than this across a gap do not show its profile.
 const CELLS_OF_A_GRADIENT: u32 = 8;
 /// Fewer grains than this in a cell say little about the density there.
 const FEWEST_GRAINS: f64 = 5.0;
-/// Cells of more mean free paths than this widen what forms in a gas that clusters; docs/comparison.md has figures.
-const LONG_CELL: f64 = 1.5;
-/// A gas is dilute, for that, below this volume fraction: in denser ones smaller cells help less.
-const DILUTE: f64 = 0.2;
-/// Gases cluster in the course of so many of Haff's times.
-const HAFF_TIMES: f64 = 5.0;
 /// A step that is capped to less than this share of its length is another choice than it says.
 const CAPPED: f64 = 0.5;
 
@@ -27,10 +21,7 @@ pub(super) fn cells<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     if scenario.engine.kind.is_event_driven() {
         return Vec::new();
     }
-    [noisy_factor(scenario), longer_than_paths(scenario), small_capacity(scenario), full_cells(scenario)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [noisy_factor(scenario), small_capacity(scenario), full_cells(scenario)].into_iter().flatten().collect()
 }
 
 /// The local Enskog factor of too few grains.
@@ -38,7 +29,10 @@ fn noisy_factor<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
     let engine = &scenario.engine;
     let per_cell = grains_per_cell(scenario, f64::from(scenario.count));
     let local = engine.kind != EngineKind::Dsmc && engine.enskog_factor == EnskogFactor::Local;
-    let gas = scenario.source.is_none() && scenario.gravity == V::ZERO;
+    // Between moving walls larger cells do more harm than this does good: what is known of both stands in one place.
+    let gas = scenario.source.is_none()
+        && scenario.gravity == V::ZERO
+        && scenario.boundary.largest_wall_speed() == 0.0;
     (local && gas && scenario.count > 0 && per_cell < FEWEST_GRAINS).then(|| {
         format!(
             "{} grains per cell: below {FEWEST_GRAINS} the local Enskog factor follows noise; enlarge engine.cell_size or \
@@ -46,41 +40,6 @@ fn noisy_factor<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
             rounded(per_cell)
         )
     })
-}
-
-/// Cells in which grains far from each other collide: where a wall drives the flow, and where the gas clusters.
-fn longer_than_paths<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
-    if scenario.count == 0 {
-        return None;
-    }
-    let longest = scenario.grid().side().components().into_iter().fold(0.0, f64::max);
-    let path = mean_free_path::<V>(scenario.mean_grain(), scenario.volume_fraction());
-    if scenario.boundary.largest_wall_speed() > 0.0 {
-        return (longest > 1.1 * path).then(|| {
-            format!(
-                "cells of {} are longer than the mean free path {}: they raise the viscosity of a driven flow",
-                rounded(longest),
-                rounded(path)
-            )
-        });
-    }
-    (longest > LONG_CELL * path && clusters(scenario)).then(|| {
-        format!(
-            "cells of {} are longer than the mean free path {}: once the gas clusters its energy falls too fast, and its \
-             structures become too wide; cells near the mean free path, with enskog_factor = \"smoothed\" where they hold \
-             few grains, come nearer to exact dynamics",
-            rounded(longest),
-            rounded(path)
-        )
-    })
-}
-
-/// Whether it is a dilute gas that nothing feeds, for so long that it clusters.
-fn clusters<V: Vector>(scenario: &Scenario<V>) -> bool {
-    let undriven = scenario.gravity == V::ZERO && scenario.source.is_none();
-    let haff_time = estimate::rates(scenario).and_then(|rates| rates.haff_time);
-    let long = haff_time.zip(cost::duration(scenario)).is_some_and(|(haff, run)| run > HAFF_TIMES * haff);
-    undriven && long && scenario.volume_fraction() < DILUTE
 }
 
 /// Cells that hold next to nothing.
@@ -140,7 +99,7 @@ pub(super) fn time_step<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
         warnings.push(format!(
             "the fixed step {} will be too long: {who} at {}, and a step that is too long ends the run; \
              engine.time_step.fixed = {} would do",
-            shown(step),
+            exact(step),
             rounded(speed),
             pace::rounded_down(pace::longest_step(scenario, later))
         ));

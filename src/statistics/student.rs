@@ -4,7 +4,7 @@
 //! regularised incomplete beta function (Abramowitz and Stegun 1964, 26.7.1 and 26.5.8).
 
 /// Two-sided probability of a normal variable beyond three standard deviations.
-pub(super) const THREE_SIGMA: f64 = 0.002_699_796_063_260_19;
+pub const THREE_SIGMA: f64 = 0.002_699_796_063_260_19;
 
 /// Steps of a bisection: the bounds are then neighbours.
 const HALVINGS: usize = 200;
@@ -14,7 +14,7 @@ const HALVINGS: usize = 200;
 ///
 /// Each place gets the share 1 − (1 − p)^(1/places) of p. For normal values of any correlation the whole is then at
 /// most p (Šidák 1967, J. Am. Stat. Assoc. 62, 626).
-pub(super) fn threshold(probability: f64, freedom: f64, places: usize) -> f64 {
+pub fn threshold(probability: f64, freedom: f64, places: usize) -> f64 {
     let share = -(-probability).ln_1p() / places.max(1) as f64;
     let probability = -(-share).exp_m1();
     let (mut lower, mut upper) = (0.0_f64, 1.0_f64);
@@ -32,7 +32,7 @@ pub(super) fn threshold(probability: f64, freedom: f64, places: usize) -> f64 {
 }
 
 /// Probability that |t| is larger than `t`.
-pub(super) fn two_sided(t: f64, freedom: f64) -> f64 {
+pub fn two_sided(t: f64, freedom: f64) -> f64 {
     incomplete_beta(freedom / (freedom + t * t), 0.5 * freedom, 0.5)
 }
 

@@ -1,9 +1,9 @@
-//! Numbers as a reader wants them.
+//! Numbers as text: to the digits that mean something, on pages, in terminals and in messages alike.
 
-use crate::observe::measure::Dimension;
+use crate::statistics::Trend;
 
-/// Superscript digits, for powers of ten and units.
-fn superscript(power: i32) -> String {
+/// A whole number in superscript digits, for powers of ten and units.
+pub fn superscript(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '0' => '⁰',
@@ -21,7 +21,7 @@ fn superscript(power: i32) -> String {
 }
 
 /// 10 to a whole power, in words of type.
-pub(super) fn power_of_ten(power: i32) -> String {
+pub fn power_of_ten(power: i32) -> String {
     match power {
         0 => "1".to_owned(),
         1 => "10".to_owned(),
@@ -30,7 +30,7 @@ pub(super) fn power_of_ten(power: i32) -> String {
 }
 
 /// `value` with `digits` significant digits; powers of ten for the very large and very small.
-pub(super) fn number(value: f64, digits: usize) -> String {
+pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -85,13 +85,13 @@ fn group(text: &str) -> String {
 }
 
 /// A count, whole, in groups of three digits.
-pub(super) fn count(value: f64) -> String {
+pub fn count(value: f64) -> String {
     if value.abs() < 1e15 { signed(&group(&format!("{value:.0}"))) } else { number(value, 4) }
 }
 
 /// A value with its standard error: two digits of the error and the value to the same place, but not more than
 /// four digits of the value unless the error is smaller still.
-pub(super) fn with_error(value: f64, standard_error: Option<f64>) -> String {
+pub fn with_error(value: f64, standard_error: Option<f64>) -> String {
     // Values that are all the same scatter by rounding alone.
     let is_real = |error: &f64| error.is_finite() && *error > 1e-13 * value.abs();
     let Some(error) = standard_error.filter(is_real) else {
@@ -113,24 +113,49 @@ pub(super) fn with_error(value: f64, standard_error: Option<f64>) -> String {
     signed(&format!("({value:.decimals$} ± {error:.decimals$}) × {}", power_of_ten(exponent)))
 }
 
-/// The unit that `dimension` makes of the names of `[length, mass, time]`; empty for a pure number.
-pub(super) fn unit(dimension: Dimension, names: &[String; 3]) -> String {
-    let powers = [(dimension.mass, &names[1]), (dimension.length, &names[0]), (dimension.time, &names[2])];
-    let factors: Vec<String> = powers
-        .iter()
-        .filter(|(power, _)| *power != 0)
-        .map(|(power, name)| {
-            // A name that is itself a formula, such as √(d/g), needs brackets under a power.
-            let simple = name.chars().all(char::is_alphanumeric) || name.ends_with(')');
-            let name = if simple || *power == 1 { (*name).clone() } else { format!("({name})") };
-            if *power == 1 { name } else { name + &superscript(i32::from(*power)) }
-        })
-        .collect();
-    factors.join("\u{202f}")
+/// `value` with up to `digits` significant digits in the form that scenarios and options take: `0.25`, `1.1e-9`.
+pub fn plain(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-4..7).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return trimmed(&format!("{value:.decimals$}"));
+    }
+    format!("{}e{exponent}", trimmed(mantissa))
 }
 
+/// `value` in the shortest form that reads back to the same bits, as scenarios and options take it.
+pub fn exact(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{value:e}") } else { format!("{value}") }
+}
+
+/// A figure as text: its value and standard error, or, where it is not steady, what it does and its mean alone.
+///
+/// The one form of every page, table and terminal: a mean of something that drifts has no error that means anything.
+pub fn figure_text(value: f64, standard_error: Option<f64>, trend: Option<Trend>) -> String {
+    figure_with_unit(value, standard_error, trend, "")
+}
+
+/// The same with a unit behind the number; an empty one for pure numbers.
+pub fn figure_with_unit(value: f64, standard_error: Option<f64>, trend: Option<Trend>, unit: &str) -> String {
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    match trend {
+        None | Some(Trend::Steady) => with_error(value, standard_error) + &unit,
+        Some(trend) => format!("{NOT_STEADY} ({}, mean {}{unit})", trend.name(), number(value, 3)),
+    }
+}
+
+/// What is said of a figure whose series drifts or wanders.
+pub const NOT_STEADY: &str = "not steady";
+
 /// `heap_slope` as "heap slope".
-pub(super) fn in_words(name: &str) -> String {
+pub fn in_words(name: &str) -> String {
     name.replace(['_', '-'], " ").replace("poisson", "Poisson")
 }
 
@@ -161,18 +186,39 @@ mod tests {
     }
 
     #[test]
+    fn errors_far_below_their_values_and_numbers_without_errors_are_short() {
+        assert_eq!(with_error(2.1e-8, Some(2.29e-9)), "(2.10 ± 0.23) × 10⁻⁸");
+        assert_eq!(with_error(264_960.0, Some(5.38e-11)), "264\u{202f}960");
+        assert_eq!(with_error(0.0, Some(0.0)), "0");
+    }
+
+    #[test]
+    fn a_figure_that_drifts_has_no_error() {
+        assert_eq!(figure_text(0.0013099, Some(0.00003), Some(Trend::Steady)), "0.00131 ± 0.00003");
+        assert_eq!(figure_text(0.0013099, Some(0.00003), None), "0.00131 ± 0.00003");
+        assert_eq!(figure_text(0.92846, Some(0.001), Some(Trend::Rising)), "not steady (rising, mean 0.928)");
+        let falling = figure_with_unit(0.021, Some(0.001), Some(Trend::Falling), "mass/time^2");
+        assert_eq!(falling, "not steady (falling, mean 0.021 mass/time^2)");
+    }
+
+    #[test]
+    fn plain_numbers_read_back() {
+        let cases =
+            [(1.1e-9, "1.1e-9"), (0.25, "0.25"), (1234.5678, "1234.57"), (-4.8e14, "-4.8e14"), (0.0, "0")];
+        for (value, text) in cases {
+            assert_eq!(plain(value, 6), text);
+            assert!((text.parse::<f64>().unwrap() - value).abs() <= 1e-5 * value.abs());
+        }
+        assert_eq!(plain(123_456.0, 3), "123456");
+        assert_eq!(plain(9.9999, 3), "10");
+        assert_eq!([0.1, 1.25e-9, 2e7, 0.0].map(exact), ["0.1", "1.25e-9", "2e7", "0"]);
+    }
+
+    #[test]
     fn counts_are_grouped_from_five_digits_on() {
         assert_eq!(
             [2037.0, 12_345.0, 17_334_407.0].map(count),
             ["2037", "12\u{202f}345", "17\u{202f}334\u{202f}407"]
         );
-    }
-
-    #[test]
-    fn units_are_products_of_powers() {
-        let names = ["d".to_owned(), "m".to_owned(), "√(d/g)".to_owned()];
-        let unit = |mass, length, time| unit(Dimension { mass, length, time }, &names);
-        assert_eq!(unit(1, 2, -2), "m\u{202f}d²\u{202f}√(d/g)⁻²");
-        assert_eq!(unit(0, 0, 0), "");
     }
 }
