@@ -202,7 +202,10 @@ impl Case {
 
     fn end(&self, dice: &mut Dice) -> String {
         match self.kind {
-            "heap" if dice.chance(0.7) => format!("[run]\nrest = {:?}\n", dice.between(5.0, 15.0)),
+            // A heap that has grown into its source holds it up for ever.
+            "heap" if dice.chance(0.7) => {
+                format!("[run]\nrest = {:?}\ntime = 70.0\n", dice.between(5.0, 15.0))
+            }
             // Where grains have come to lie, exact dynamics takes very many events.
             _ if self.is_exact() => format!("[run]\ntime = {:?}\n", dice.between(4.0, 12.0)),
             _ => format!("[run]\ntime = {:?}\n", dice.between(8.0, 25.0)),
