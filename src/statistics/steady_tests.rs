@@ -136,7 +136,6 @@ fn two_hundred_series_of_each_kind_are_told_right() {
 fn many_series_of_each_kind_are_told_right() {
     let shares = told_right(4000, 7_000_000);
     for (kind, share) in KINDS.iter().zip(shares) {
-        println!("{kind}: {:.2} % right", 100.0 * share);
         assert!(share >= 0.95, "{kind}: {share}");
     }
     // Of independent values no more than two in a thousand: a run has twenty figures.
