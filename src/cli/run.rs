@@ -149,7 +149,9 @@ fn conclude(result: Result<Outcome, RunError>, quiet: bool) -> Exit {
             if !quiet {
                 if !outcome.begun_anew.is_empty() {
                     let measures = outcome.begun_anew.join(", ");
-                    eprintln!("warning: figures of {measures} begin where the run was resumed: a version before this one observed otherwise");
+                    eprintln!(
+                        "warning: figures of {measures} begin where the run was resumed: a version before this one observed otherwise"
+                    );
                 }
                 print!("{}", closing_words(&outcome));
             }
