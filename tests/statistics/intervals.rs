@@ -101,8 +101,8 @@ fn assert_pooled(shares: &[(String, [f64; 2])], tolerance: [f64; 2]) {
 
 #[test]
 fn intervals_of_a_few_replicas_hold() {
-    // Shares of 24 replicas of each of three cases scatter by 5.5 and 2.6 %; beside the 5 and 2.5 % that are allowed.
-    assert_pooled(&shares(24), [0.05 + 3.0 * 0.055, 0.025 + 3.0 * 0.026]);
+    // Shares of 16 replicas of each of three cases scatter by 6.7 and 3.1 %; beside the 5 and 2.5 % that are allowed.
+    assert_pooled(&shares(16), [0.05 + 3.0 * 0.067, 0.025 + 3.0 * 0.031]);
 }
 
 #[test]
