@@ -55,7 +55,7 @@ pub enum Cadence {
 pub enum Effort {
     /// Sums over the grains.
     Sums,
-    /// Distributions or other tables over the grains, which also make long samples.
+    /// Distributions or other tables over the grains, which may make long samples; quantities about the local flow.
     Table,
 }
 

@@ -1,7 +1,7 @@
 //! `pressure`: the equation of state of a periodic gas, kinetic and collisional (Miller 2004, equation 4.44).
 
 use super::local_flow::{LocalFlow, grains_of_a_bin};
-use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
+use super::measure::{Cadence, Column, Effort, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_rate, steady_ratio};
 use super::setting::Setting;
 use super::units::{PURE, column, stress};
@@ -93,6 +93,10 @@ impl<V: Vector> Measure<V> for Pressure {
 
     fn cadence(&self) -> Cadence {
         Cadence::Spread
+    }
+
+    fn effort(&self) -> Effort {
+        Effort::Table
     }
 
     fn sample(&mut self, snapshot: &Snapshot<'_, V>) {

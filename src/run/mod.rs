@@ -161,6 +161,8 @@ pub struct Outcome {
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
     pub laps: Vec<(&'static str, f64)>,
+    /// Measures that began anew when the run went on from a log of an earlier version.
+    pub begun_anew: Vec<&'static str>,
 }
 
 /// Hears of every step.
@@ -239,6 +241,7 @@ impl<V: Vector> Run<'_, V> {
             units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
+            begun_anew: simulation.begun_anew().to_vec(),
         })
     }
 }

@@ -141,11 +141,14 @@ impl<'s, V: Vector> Simulation<'s, V> {
         for (measure, number) in self.measures.iter_mut().zip(&mut self.samples) {
             let place = saved.memories.iter().position(|(name, _)| name == measure.name());
             let Some(place) = place else { continue };
-            if !measure.recall(&saved.memories[place].1) {
-                if is_earlier {
-                    self.begun_anew.push(measure.name());
-                    continue;
-                }
+            let memory = &saved.memories[place].1;
+            let is_taken = measure.recall(memory);
+            let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<u64>>();
+            if is_earlier && (!is_taken || bits(&measure.memory()) != bits(memory)) {
+                self.begun_anew.push(measure.name());
+                continue;
+            }
+            if !is_taken {
                 return Err(format!(
                     "the measure {} does not remember this; take it out with --set record.measures=[…]",
                     measure.name()

@@ -61,7 +61,7 @@ impl Work {
     fn cut(self, effort: Effort, progress: f64) -> u32 {
         let (each, finest) = match effort {
             Effort::Sums => (0.5, FINEST),
-            Effort::Table => (1.2, FINEST_FOR_TABLES),
+            Effort::Table => (2.0, FINEST_FOR_TABLES),
         };
         let expected = if progress > 0.0 { self.done / progress } else { 0.0 };
         let affordable = SMALL.max(SHARE * expected) / (self.grains * (self.showing + each));

@@ -33,7 +33,9 @@ const LOWEST: std::ops::RangeInclusive<usize> = 1..=4;
 /// High cosine modes.
 const HIGH: std::ops::RangeInclusive<usize> = 16..=40;
 /// Fewer values are not tested.
-pub(super) const FEWEST: usize = 32;
+pub(super) const FEWEST: usize = 12;
+/// In fewer values slow and fast are not told apart, and wandering is not looked for.
+const FEWEST_THAT_WANDER: usize = 32;
 /// Jumps are looked for at these thirty-seconds of the series.
 const PLACES: std::ops::RangeInclusive<usize> = 4..=28;
 
@@ -53,7 +55,7 @@ pub(super) fn trend(values: &[f64]) -> Option<Trend> {
     Some(match change {
         Some(change) if change.amount > 0.0 => Trend::Rising,
         Some(_) => Trend::Falling,
-        None if wanders(&deviations) => Trend::Wandering,
+        None if count >= FEWEST_THAT_WANDER && wanders(&deviations) => Trend::Wandering,
         None => Trend::Steady,
     })
 }

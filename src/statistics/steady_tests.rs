@@ -147,7 +147,7 @@ fn drifts_have_a_direction() {
     assert_eq!(of_values(&changed(1, 400, 12.0, None)).trend, Some(Trend::Rising));
     assert_eq!(of_values(&changed(2, 400, -12.0, None)).trend, Some(Trend::Falling));
     assert_eq!(of_values(&changed(3, 400, -12.0, Some(0.3))).trend, Some(Trend::Falling));
-    assert_eq!(of_values(&changed(4, 30, 0.0, None)).trend, None);
+    assert_eq!(of_values(&changed(4, 11, 0.0, None)).trend, None);
     assert_eq!(of_values(&[2.5; 40]).trend, Some(Trend::Steady));
 }
 
@@ -170,4 +170,15 @@ fn a_ratio_without_a_denominator_is_none() {
     assert_eq!(SteadyEstimate::ratio(&[[1.0, 0.0]]), None);
     let one = SteadyEstimate::ratio(&[[3.0, 2.0]]).unwrap();
     assert_eq!((one.value, one.standard_error, one.freedom, one.trend), (1.5, None, None, None));
+}
+
+#[test]
+fn few_values_show_large_drifts_and_seldom_others() {
+    for count in [12, 16, 24] {
+        let trend = |seed: u64, errors: f64| of_values(&changed(seed, count, errors, None)).trend;
+        let alarms = (0..2000).filter(|seed| trend(*seed, 0.0) != Some(Trend::Steady)).count();
+        assert!(alarms <= 12, "{alarms} of 2000 series of {count} values");
+        let found = (0..200).filter(|seed| trend(3000 + seed, 20.0) == Some(Trend::Rising)).count();
+        assert!(found >= 190, "{found} of 200 series of {count} values");
+    }
 }
