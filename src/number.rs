@@ -194,8 +194,8 @@ mod tests {
 
     #[test]
     fn a_figure_that_drifts_has_no_error() {
-        assert_eq!(figure_text(0.0013099, Some(0.00003), Some(Trend::Steady)), "0.00131 ± 0.00003");
-        assert_eq!(figure_text(0.0013099, Some(0.00003), None), "0.00131 ± 0.00003");
+        assert_eq!(figure_text(0.0013099, Some(0.00003), Some(Trend::Steady)), "0.001310 ± 0.000030");
+        assert_eq!(figure_text(0.0013099, Some(0.00003), None), "0.001310 ± 0.000030");
         assert_eq!(figure_text(0.92846, Some(0.001), Some(Trend::Rising)), "not steady (rising, mean 0.928)");
         let falling = figure_with_unit(0.021, Some(0.001), Some(Trend::Falling), "mass/time^2");
         assert_eq!(falling, "not steady (falling, mean 0.021 mass/time^2)");

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::assemble::{Entry, Replica};
 use super::difference::{apart, difference};
-use super::errors::{Along, Drawn, Missing, Raw, STATED, Terms, as_stated};
+use super::errors::{Along, Drawn, Missing, Raw, Terms, as_stated};
 use super::judge::judged;
 use super::memory::longest_memory;
 use super::model::{ComparedFigure, Difference, Verdict};
@@ -139,11 +139,11 @@ fn of_one(a: &Replica, b: &Replica, name: &str, scale: f64, terms: Terms) -> Opt
         }
     };
     let mut raw = as_stated(vec![value], [&errors[0], &errors[1]], missing);
-    if let [[first], [second]] = errors
+    let freedoms = [own, other].map(|figure| figure.degrees_of_freedom);
+    if let ([[first], [second]], [Some(of_first), Some(of_second)]) = (errors, freedoms)
         && first + second > 0.0
     {
-        let freedoms = [own, other].map(|figure| figure.degrees_of_freedom.unwrap_or(STATED));
-        raw.freedom = freedom_of_both([first, second], freedoms);
+        raw.freedom = freedom_of_both([first, second], [of_first, of_second]);
     }
     Some(raw)
 }

@@ -20,11 +20,9 @@ const MOST_MEANT: usize = 6;
 /// never both.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>, remedy: &str) -> String {
     let candidates: Vec<&str> = candidates.into_iter().collect();
-    if let Some(meant) = nearest(name, candidates.iter().copied()) {
-        return format!("did you mean `{meant}`?");
-    }
+    let near = || nearest(name, candidates.iter().copied());
     match &holding(name, &candidates)[..] {
-        [] => remedy.to_owned(),
+        [] => near().map_or_else(|| remedy.to_owned(), |meant| format!("did you mean `{meant}`?")),
         [one] => format!("did you mean `{one}`?"),
         [first @ .., last] => {
             let first: Vec<String> = first.iter().map(|name| format!("`{name}`")).collect();

@@ -225,7 +225,7 @@ pub(crate) fn cooling() -> Sample {
 pub(crate) fn shear() -> Sample {
     let scenario = "title = \"Bagnold shear flow\"\ndimension = 2\n[engine]\nkind = \"hsmc\"\ncell_size = 2.5\n[domain]\nsize = [40.0, 40.0]\n[boundary]\nx = \"periodic\"\n\
         y.lower = { wall = \"rough\", velocity = [-0.5, 0.0] }\ny.upper = { wall = \"rough\", velocity = [0.5, 0.0] }\n\
-        [particles]\nvolume_fraction = 0.1\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n[run]\ntime = 400.0\n";
+        [particles]\nvolume_fraction = 0.1\ndiameter = 1.0\nmass = 1.0\nrestitution = 0.9\n[initial]\nvelocities = { maxwell = 0.02 }\n[run]\ntime = 400.0\n";
     let names = [
         ("time", TIME),
         ("kinetic_energy", ENERGY),
