@@ -66,8 +66,8 @@ fn read(text: &str) -> AnyScenario {
 
 #[test]
 fn disks_of_two_sizes_and_masses_collide_as_kinetic_theory_says() {
-    for volume_fraction in [0.1, 0.4] {
-        let seeds = (1..=5).map(|seed| match read(&text("[50.0, 50.0]", 2, volume_fraction, seed)) {
+    for (size, volume_fraction) in [("[150.0, 150.0]", 0.1), ("[100.0, 100.0]", 0.4)] {
+        let seeds = (1..=5).map(|seed| match read(&text(size, 2, volume_fraction, seed)) {
             AnyScenario::Two(scenario) => scenario,
             AnyScenario::Three(_) => panic!("the scenario is flat"),
         });
@@ -77,8 +77,8 @@ fn disks_of_two_sizes_and_masses_collide_as_kinetic_theory_says() {
 
 #[test]
 fn spheres_of_two_sizes_and_masses_collide_as_kinetic_theory_says() {
-    for volume_fraction in [0.05, 0.3] {
-        let seeds = (1..=5).map(|seed| match read(&text("[16.0, 16.0, 16.0]", 3, volume_fraction, seed)) {
+    for (size, volume_fraction) in [("[50.0, 50.0, 50.0]", 0.05), ("[24.0, 24.0, 24.0]", 0.3)] {
+        let seeds = (1..=5).map(|seed| match read(&text(size, 3, volume_fraction, seed)) {
             AnyScenario::Three(scenario) => scenario,
             AnyScenario::Two(_) => panic!("the scenario is deep"),
         });
