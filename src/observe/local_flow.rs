@@ -55,10 +55,8 @@ impl Bins {
         for axis in free {
             counts[axis] = ((size[axis] / side) as u32).clamp(1, grid.cells()[axis]);
         }
-        let mut has_gradient = [false; 3];
-        for axis in 0..V::DIMENSION {
-            has_gradient[axis] = counts[axis] > 1 || !grid.is_periodic(axis);
-        }
+        let has_gradient =
+            [0, 1, 2].map(|axis| axis < V::DIMENSION && (counts[axis] > 1 || !grid.is_periodic(axis)));
         Bins { counts, has_gradient }
     }
 

@@ -24,8 +24,7 @@ fn run_to_end<V: Vector>(scenario: &Scenario<V>) -> Balance<V> {
     let mut simulation = Simulation::start(scenario, gas, &mut NoLaps).unwrap();
     let before = simulation.beginning().momentum;
     while simulation.end_reason().is_none() {
-        let horizon = simulation.horizon_of(schedule::Spread::Even(3), 3);
-        simulation.advance(&mut NoLaps, horizon).unwrap();
+        simulation.advance(&mut NoLaps, crate::engine::Horizon::NONE).unwrap();
     }
     let (gas, totals) = (simulation.gas(), simulation.totals());
     assert_eq!(totals.counts.removed + totals.poured, 0);
@@ -63,12 +62,14 @@ fn text(engine: EngineKind, dimension: usize, walls: &str, restitution: f64) -> 
     } else {
         ""
     };
+    // What lies makes events without end; before that every wall is hit.
+    let time = if engine == EngineKind::EventDriven { 8.0 } else { 40.0 };
     let cells = if engine == EngineKind::EventDriven { "" } else { "cell_size = 2.0\n" };
     format!(
         "dimension = {dimension}\nseed = 5\ngravity = {gravity}\n[engine]\nkind = \"{}\"\n{cells}{cure}\
          [domain]\nsize = {size}\n[boundary]\n{walls}{side}\
          [particles]\ncount = 24\nrestitution = {restitution}\n[initial]\nvelocities = {{ maxwell = 1.0 }}\n\
-         [run]\ntime = 40.0\n",
+         [run]\ntime = {time}\n",
         engine.name()
     )
 }
