@@ -170,6 +170,6 @@ mod tests {
     #[test]
     fn a_number_is_never_rounded_up() {
         let shown = [0.25, 0.099_999, 12.349, 1.0, 6.789e-7].map(rounded_down);
-        assert_eq!(shown, ["0.25", "0.0999", "12.3", "1", "6.780e-7"]);
+        assert_eq!(shown, ["0.25", "0.0999", "12.3", "1", "6.78e-7"]);
     }
 }
