@@ -7,19 +7,20 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use glam::{DVec2, DVec3};
 use grainflow::observe::measure::Profile;
 use grainflow::record::contents::RunLog;
 use grainflow::record::reader::{read_log, read_states};
 use grainflow::record::state::SavedState;
-use grainflow::run::{NUMERICS, run};
 use grainflow::run::resume::Resumption;
 use grainflow::run::verify::{Verdict, verify};
+use grainflow::run::{NUMERICS, run};
 use grainflow::scenario::{Overrides, parse};
 use grainflow::space::Vector;
 
-use super::mint::{all, folder, place, write};
+use super::mint::{FORMAT, all, folder, place, write};
 
 /// The longest that a golden log may be [bytes].
 const MOST_BYTES: u64 = 24_000;

@@ -9,7 +9,7 @@ use grainflow::scenario::model::EngineKind;
 use grainflow::scenario::{Overrides, parse};
 
 /// The newest format; a new one gets a folder of its own, and this one stays.
-const FORMAT: &str = "1";
+pub(crate) const FORMAT: &str = "1";
 /// When its run is stopped [time]: long before its limit, so that measures have taken few samples.
 const END: f64 = 0.5;
 
