@@ -84,7 +84,7 @@ fn a_shaken_floor_belongs_to_the_box_of_every_export_and_picture() {
         let engine_kind = format!("engine.kind=\"{engine}\"");
         // Without a cure exact dynamics of these grains collapses.
         let cure = "engine.event_driven.collapse={ elastic_below = 0.3 }";
-        let sets = [&engine_kind, cure, "run.time=50", "record.frames=25"];
+        let sets = [&engine_kind, cure, "run.time=12", "record.frames=25"];
         let place = Place::with_scenario("python/shaken.toml", &sets);
         let log = read_log(&place.path("run/log.mcap")).unwrap();
         let lowest = log.frames.iter().flat_map(|frame| &frame.positions).map(|p| p[1]).fold(0.0, f32::min);
