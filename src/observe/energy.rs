@@ -204,7 +204,9 @@ mod tests {
         let velocities = random_velocities(2, 2000).into_iter().zip(&places);
         let velocities = velocities.map(|(v, x): (DVec2, &DVec2)| v + DVec2::X * x.y).collect();
         let state = (bed.gas(0.0, places, velocities), Totals::default());
-        let figure = |name| figure_of(&mut Energy::new(&bed.setting), &[state.clone()], 0.0, name).0.unwrap();
+        let figure = |name| {
+            figure_of(&mut Energy::new(&bed.setting), std::slice::from_ref(&state), 0.0, name).0.unwrap()
+        };
         // (1 + 20²/12 + 1)/2, and 1 ± 1/√2000.
         assert!((figure("temperature") - 17.7).abs() < 0.8, "{}", figure("temperature"));
         assert!((figure("granular_temperature") - 1.0).abs() < 0.08, "{}", figure("granular_temperature"));

@@ -69,12 +69,12 @@ impl Equations {
         let species = self.squares.len();
         let scale: Vec<f64> = (0..species).map(|s| self.factors[s][s].abs()).collect();
         // The factors of a species itself outweigh those of others, so that the diagonal will do.
-        for s in 0..species {
+        for (s, &scale) in scale.iter().enumerate() {
             let pivot = self.factors[s][s];
-            if scale[s] == 0.0 {
+            if scale == 0.0 {
                 continue;
             }
-            if pivot <= SINGULAR * scale[s] {
+            if pivot <= SINGULAR * scale {
                 // Too few grains to tell one species from another.
                 return vec![f64::NAN; species];
             }

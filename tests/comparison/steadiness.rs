@@ -47,7 +47,7 @@ fn a_figure_that_is_not_steady_gets_no_verdict_on_either_side() {
         let said = format!("hsmc: stress of {whose} is not steady (rising, mean ");
         assert!(difference.sentence.starts_with(&said), "{}", difference.sentence);
         let judgement = &judgements(&comparison)[0];
-        assert_eq!(judgement.not_steady, [difference.sentence.clone()]);
+        assert_eq!(judgement.not_steady, std::slice::from_ref(&difference.sentence));
         assert!(judgement.differing.is_empty());
         let page = render_comparison(&comparison);
         assert!(page.contains("not steady (rising, mean 1"), "{whose}");
