@@ -45,6 +45,8 @@ fn agrees_with_its_table(summary: &Map<String, Value>) {
     for (key, kind) in KEYS {
         let value = summary.get(key).unwrap_or_else(|| panic!("{key}"));
         match kind {
+            // Of a run that did not fail.
+            Kind::Text if key == "failure" => assert!(value.is_null(), "{key}: {value}"),
             Kind::Text => assert!(value.is_string() || value.is_boolean(), "{key}: {value}"),
             Kind::Number | Kind::Counter => assert!(value.is_number() || value.is_null(), "{key}: {value}"),
             Kind::Cost => assert!(value.as_f64().is_none_or(|cost| cost >= 0.0), "{key}: {value}"),
@@ -160,7 +162,10 @@ fn a_full_disk_ends_the_run_at_once_and_leaves_a_log() {
     assert!(said.contains("cannot write to the log run/log.mcap: File too large"), "{said}");
     let log = read_log(&place.path("run/log.mcap")).unwrap();
     assert!(log.series.len() > 3 && log.cut_off.is_some(), "{}", log.series.len());
-    assert!(!place.path("run/summary.json").exists());
+    let left = summary(&place.path("run"));
+    assert_eq!((&left["end_reason"], &left["interrupted"]), (&"failed".into(), &false.into()));
+    assert!(left["failure"].as_str().unwrap().contains("is too long"), "{}", left["failure"]);
+    assert!(place.path("run/report.html").exists());
 }
 
 #[test]

@@ -19,7 +19,7 @@ use crate::record::log_at;
 use crate::replay::compute::{Basis, ComputeError};
 use crate::replay::selection::Selection;
 
-/// Play a log back: its measures as comma-separated values, or pictures, a report, a film in the terminal
+/// Play a log back: its measures as CSV, pictures, a report, a film in the terminal
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct ReplayArguments {

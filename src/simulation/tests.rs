@@ -216,7 +216,8 @@ fn grains_are_poured_at_their_times_and_wait_for_room() {
     let (times, calls) = recorded(&mut simulation, frames);
     assert_eq!((simulation.totals().poured, simulation.end_reason()), (1, Some(EndReason::Time)));
     assert_eq!(simulation.gas().time(), 20.0);
-    assert!(times.len() >= 10 && calls < 2000, "{} {calls}", times.len());
+    // At most 2048 samples, and the trials and recordings.
+    assert!(times.len() >= 10 && calls < 2500, "{} {calls}", times.len());
     let pouring = simulation.pouring.as_ref().unwrap();
     assert_eq!(pouring.last_poured(), 0.0);
     let (held, nominal) = (pouring.held_until(), 1.0 / 0.3);

@@ -58,7 +58,7 @@ fn text(engine: EngineKind, dimension: usize, walls: &str, restitution: f64) -> 
         ("[8.0, 12.0, 8.0]", "[0.2, -1.0, 0.1]")
     };
     let cure = if engine == EngineKind::EventDriven && restitution < 1.0 {
-        "event_driven.collapse = { elastic_below = 0.5 }\n"
+        "event_driven.collapse = { elastic_below = 0.5, contact_time = 1e-5 }\n"
     } else {
         ""
     };

@@ -26,7 +26,8 @@ fn a_collapse_is_told_of_its_engine_and_the_others_are_shown() {
     let log = place.log("out/gas-compare/event-driven-1");
     assert!(!log.series.is_empty() && log.cut_off.is_none());
     assert!(place.path("out/gas-compare/event-driven-1.toml").exists());
-    assert!(!place.path("out/gas-compare/event-driven-1/summary.json").exists());
+    let summary = fs::read_to_string(place.path("out/gas-compare/event-driven-1/summary.json")).unwrap();
+    assert!(summary.contains("\"end_reason\": \"failed\""), "{summary}");
     // With a cure it holds.
     let cure = ["--set", "engine.event_driven.collapse.contact_time=1e-3", "--set", "run.time=2", "--force"];
     let output = place.grainflow(&[&arguments[..], &COLLAPSING, &cure].concat());
