@@ -339,5 +339,4 @@ fn tangents(n: DVec3) -> (DVec3, DVec3) {
 }
 
 #[cfg(test)]
-#[path = "space_tests.rs"]
 mod tests;

@@ -246,7 +246,7 @@ fn resumed_end<V: Vector>(scenario: &Scenario<V>, log: &Path, state: usize) -> (
     while simulation.end_reason().is_none() {
         simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
     }
-    let from = 0.5 * simulation.gas().time();
+    let from = simulation.steady_from();
     let (measures, snapshot) = simulation.observation();
     let figures = measures
         .iter()

@@ -171,7 +171,10 @@ pub(super) fn velocities<V: Vector>(
     match table.velocities? {
         given @ (None | Some(InitialVelocities::Rest)) => {
             let is_missing = given.is_none();
-            let rest = never_moved(story)?.or(never_collides(story)?);
+            let rest = match never_moved(story)? {
+                Some(reason) => Some(reason),
+                None => never_collides(story)?,
+            };
             if let Some(reason) = rest {
                 let message = format!(
                     "{}{reason}; write {{ maxwell = 1.0 }}",

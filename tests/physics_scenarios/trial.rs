@@ -58,7 +58,7 @@ pub(crate) fn advance_until<V: Vector>(
 
 /// The figures of a run up to now; those that it is too short for are left out.
 pub(crate) fn figures<V: Vector>(simulation: &mut Simulation<'_, V>) -> BTreeMap<String, f64> {
-    let from = simulation.scenario().record.from.unwrap_or(0.5 * simulation.gas().time());
+    let from = simulation.steady_from();
     let (measures, snapshot) = simulation.observation();
     let all = measures.iter().flat_map(|measure| measure.conclusion(&snapshot, from).1);
     all.filter_map(|figure| Some((figure.name, figure.value?))).collect()
