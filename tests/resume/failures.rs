@@ -24,7 +24,7 @@ fn heap(engine: &str, sets: &[&str]) -> AnyScenario {
 
 /// Inelastic collapse, grains that become too fast for a fixed step while others are poured, a step that is too long at once.
 fn doomed() -> [(&'static str, AnyScenario); 3] {
-    let fixed = ["engine.time_step={ fixed = 0.35 }", "record.measures=[\"energy\", \"flow\", \"heap\"]"];
+    let fixed = ["engine.time_step={ fixed = 0.45 }", "record.measures=[\"energy\", \"flow\", \"heap\"]"];
     let at_once =
         ["engine.time_step={ fixed = 0.35 }", "particles.count=100", "initial.velocities={ maxwell = 9.0 }"];
     [
