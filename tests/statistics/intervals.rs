@@ -50,15 +50,15 @@ collapse = { elastic_below = 0.001 }
 size = [10.0, 100.0]
 [boundary]
 x = "periodic"
-y.lower = { wall = "vibrating", amplitude = 0.5, frequency = 1.0 }
+y.lower = { wall = "vibrating", amplitude = 0.2, frequency = 1.0 }
 y.upper = { wall = "smooth" }
 [particles]
 count = 20
 restitution = 0.9
 [run]
-time = 300.0
+time = 900.0
 [record]
-from = 60.0
+from = 100.0
 "#;
 
 /// Scenarios with the figures that are looked at.
