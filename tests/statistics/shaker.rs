@@ -65,10 +65,12 @@ fn a_mean_does_not_depend_on_where_in_a_period_the_window_begins() {
 /// Asserts that the means of runs whose samples once came in step with the floor agree with one that could not.
 fn no_outliers(periods: &[f64], times: &[f64]) {
     for &period in periods {
-        let means: Vec<_> = times
-            .iter()
-            .map(|time| figure(&small_figures(period, *time, &[]), "centre_of_mass_mean_height"))
-            .collect();
+        let mean_of = |time: &f64| figure(&small_figures(period, *time, &[]), "centre_of_mass_mean_height");
+        let all = times.iter().map(|time| (*time, mean_of(time)));
+        // A run that forgets too slowly states no error.
+        let (times, means): (Vec<f64>, Vec<_>) =
+            all.filter(|(_, mean)| mean.standard_error.is_some()).unzip();
+        assert!(means.len() >= 3, "period {period}: {} of the runs have an error", means.len());
         let weight = |k: usize| means[k].standard_error.unwrap().powi(-2);
         let all: f64 = (0..means.len()).map(weight).sum();
         for (k, mean) in means.iter().enumerate() {
