@@ -242,7 +242,7 @@ fn a_job_runs_every_ignored_test() {
                 let name = function_below(lines.clone());
                 assert!(
                     runs_ignored(&scripts, &target, name),
-                    "{}: {name}: `cargo test --release {target} -- --ignored {name}` belongs into .ci/full or .ci/run",
+                    "{}: {name}: `cargo test --release {target} -- --ignored {name}` belongs in .ci/full or .ci/run",
                     file.path
                 );
                 found += 1;

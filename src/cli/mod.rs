@@ -118,7 +118,7 @@ fn refuse(error: &clap::Error) -> ExitCode {
     {
         eprintln!("error: {hint}");
     }
-    // As clap itself has it: where nobody reads, there is nothing left to say.
+    // As clap itself has it: a closed pipe ends the output.
     let _ = error.print();
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::BadInput as u8))
 }

@@ -7,7 +7,7 @@ use super::units::{RATE, column};
 use crate::space::Vector;
 
 /// Collisions per particle and time 2ΔC/(N Δt), the mean free time N Δt/(2ΔC), and the mean free path: the mean
-/// speed |v − u| about the local flow u ([`local_flow`](super::local_flow)), summed over time, per collision of a grain.
+/// speed |v − u| about the local flow u (`local_flow`), summed over time, per collision of a grain.
 ///
 /// Between two looks at the gas the mean speed is taken as the mean of both.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use crate::statistics::Estimate;
 /// Energy and what it is made of, compared with the first state that it was shown.
 ///
 /// * `temperature`: ⟨m|v − v̄|²⟩/D about the velocity v̄ of the centre of mass of all grains; it contains the flow;
-/// * `granular_temperature`: about the local flow, as [`local_flow`](super::local_flow) has it, in bins of 20 grains in 2D and
+/// * `granular_temperature`: about the local flow, as `local_flow` has it, in bins of 20 grains in 2D and
 ///   40 in 3D on the average over the box; NaN where no bin holds enough;
 /// * `granular_temperature_species_1` and so on, in mixtures: that of each species, in the order of the scenario;
 ///   `temperature_ratio_species_2` and so on: over that of the first.

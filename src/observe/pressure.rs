@@ -10,7 +10,7 @@ use crate::space::Vector;
 /// P = ((N − 1) T + Σ p·s / (D Δt)) / V from the virial theorem about the centre of mass (Hansen and McDonald 2006, section
 /// 2.2), the compressibility factor PV/((N − 1) T); (N − 1) T D = Σ m|v − v̄|² where nothing flows.
 ///
-/// T is the granular temperature about the local flow u, in the bins of [`local_flow`](super::local_flow). Momentum flows
+/// T is the granular temperature about the local flow u, in the bins of `local_flow`. Momentum flows
 /// through a plane as Σ m v v = Σ m c c + Σ m u u, c = v − u: the first part is the kinetic pressure, the second the flux ρ u u of
 /// the flow, which Euler's equations have beside the pressure, and which moves along with the gas. Where nothing flows
 /// the second is zero.

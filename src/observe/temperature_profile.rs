@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn the_flow_of_a_slice_is_no_heat() {
         let bed = setting_of(DVec2::new(2.0, 6.0), [1, 3, 1]);
-        // Below three in a wind of 5 that grows with height; above one alone; nobody in the middle.
+        // Below three in a wind of 5 that grows with height; above one alone; none in the middle.
         let heights = [0.5, 1.0, 1.5, 5.0];
         let positions = heights.iter().map(|&y| DVec2::new(1.0, y)).collect();
         let mut gas = bed.gas(0.0, positions, vec![DVec2::ZERO; 4]);

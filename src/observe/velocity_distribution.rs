@@ -26,7 +26,7 @@ const NAMES: [&str; 5] = ["temperature_anisotropy", "alpha_4", "alpha_6", "alpha
 
 /// Components c of the velocities about the local flow u, in thermal velocities: c = (v − u) √(m/T), m the mass of the
 /// grain, T about the same flow; those of all axes are taken together. The flow is that of
-/// [`local_flow`](super::local_flow), in bins of 200 grains on the average over the box; of a gas of fewer than 400 grains in a
+/// `local_flow`, in bins of 200 grains on the average over the box; of a gas of fewer than 400 grains in a
 /// periodic box it is the velocity of their centre of mass. v − u is divided by √(1 − h), h the share of the grain in the
 /// flow of its bin.
 ///

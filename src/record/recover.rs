@@ -100,7 +100,7 @@ impl Count {
         *count += 1;
         *next = header.sequence.saturating_add(1);
         if topic == schema::topic::MEASURES {
-            // A message whose checksum holds and that says no time is none of a run.
+            // A message whose checksum holds but that has no time is not of a run.
             let time = MeasuresMessage::decode(data, &[TIME]).map(|message| message.values[0]);
             recovery.end = time.ok().or(recovery.end);
         }

@@ -314,7 +314,7 @@ impl From<'_> {
         let watch = Stopwatch::default();
         let earlier = self.parts_before(&state);
         let changed = earlier != self.history.earlier;
-        // Where a part of the run begins, and what it begins with, is told by that state alone.
+        // Where a part of the run begins, and what it begins with, stands in that state only.
         let begins_part = earlier.last().is_some_and(|part| {
             let (steps, events) = (state.totals.steps, state.totals.events.all);
             (part.time, part.steps, part.events) == (state.time, steps, events)

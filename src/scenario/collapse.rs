@@ -45,12 +45,12 @@ fn too_slow<V: Vector>(scenario: &Scenario<V>) -> Option<String> {
     })
 }
 
-/// The cure that has been tried on grains that lie.
+/// The cure that has been tried on grains at rest.
 fn tried<V: Vector>(scenario: &Scenario<V>) -> Cure {
     Cure::at_rest(scenario.gravity.length(), scenario.largest_diameter())
 }
 
-/// Whether the scenario has a cure that helps. A contact time alone is none for grains that lie on each other: they collide all the
+/// Whether the scenario has a cure that helps. A contact time alone does not help grains at rest on each other: they collide all the
 /// time.
 pub(super) fn is_cured<V: Vector>(scenario: &Scenario<V>) -> bool {
     let cure = scenario.engine.event_driven.cure;

@@ -20,7 +20,7 @@ const HAFF_TIMES: f64 = 5.0;
 const LONG_CELL: f64 = 1.5;
 /// A gas is dilute, for that, below this volume fraction: in denser ones smaller cells help less.
 const DILUTE: f64 = 0.2;
-/// A pressure that is wrong by less than this share is told beside the figure alone.
+/// A pressure that is wrong by less than this share is stated beside the figure only.
 const PRESSURE_WORTH_A_WARNING: f64 = 0.05;
 
 /// Something that an engine is known to get wrong.

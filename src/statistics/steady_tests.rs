@@ -113,7 +113,7 @@ fn of_kind(kind: usize, seed: u64, part: f64) -> (Vec<f64>, bool) {
 
 const KINDS: [&str; 6] = ["drift", "jump", "wandering", "oscillation", "white", "correlated"];
 
-/// Shares of series of each kind that are told right.
+/// Shares of series of each kind that are classified correctly.
 fn told_right(series: u64, seed: u64) -> [f64; 6] {
     std::array::from_fn(|kind| {
         let right = (0..series).filter(|k| {

@@ -121,7 +121,7 @@ impl<V: Vector> World<V> {
     }
 
     /// A cure that goes on where this one did not do. Under gravity it is no less than what has been tried. A contact time alone
-    /// is none there: it would take the collisions of grains that lie for lasting contacts.
+    /// is none there: it would take the collisions of grains at rest for lasting contacts.
     fn remedy(&self) -> Cure {
         let cure = self.laws.cure;
         let stronger = Cure {

@@ -38,7 +38,7 @@ pub struct Cure {
 impl Cure {
     /// The cure with which grains that come to lie under `gravity` were followed to the end: elastic below 0.3 √(g d) and within
     /// 10⁻⁵ √(d/g) of another collision. Without the latter strongly dissipative grains, pressed together at gaps below all
-    /// rounding, collide without end at any speed; it is far below the time between collisions of grains that lie.
+    /// rounding, collide without end at any speed; it is far below the time between collisions of grains at rest.
     /// docs/event-driven.md has the runs, among them those that ended in collapse with other cures.
     pub fn at_rest(gravity: f64, diameter: f64) -> Self {
         let (speed, time) = ((gravity * diameter).sqrt(), (diameter / gravity).sqrt());
