@@ -1,5 +1,7 @@
 //! The audit of a state of hard grains: who is where somebody else is.
 
+use rayon::prelude::*;
+
 use super::bins::Bins;
 use super::gas::Gas;
 use crate::space::Vector;
@@ -17,22 +19,23 @@ pub fn overlaps<V: Vector>(gas: &Gas<V>, fixed_walls: [[bool; 2]; 3]) -> u64 {
     let diameters: Vec<f64> = (0..gas.len()).map(|row| gas.grain_at(row).diameter).collect();
     let largest = diameters.iter().copied().fold(0.0, f64::max);
     let mut bins = Bins::new(grid, largest, gas.len());
-    let mut number = 0;
-    for (row, &position) in gas.positions().iter().enumerate() {
-        // Those that came before: every pair once.
+    gas.positions().iter().for_each(|&position| bins.insert(position));
+    let of_grain = |(row, &position): (usize, &V)| {
+        let mut number = 0;
         bins.any_near(position, |other, distance_squared| {
             let contact = 0.5 * (diameters[row] + diameters[other]) * (1.0 - TOLERANCE);
-            number += u64::from(distance_squared < contact * contact);
+            // Every pair once.
+            number += u64::from(other < row && distance_squared < contact * contact);
             false
         });
-        bins.insert(position);
         let reach = 0.5 * diameters[row] * (1.0 - TOLERANCE);
         for (axis, [lower, upper]) in fixed_walls.into_iter().enumerate().take(V::DIMENSION) {
             number += u64::from(lower && position[axis] - grid.origin()[axis] < reach);
             number += u64::from(upper && grid.end()[axis] - position[axis] < reach);
         }
-    }
-    number
+        number
+    };
+    gas.positions().par_iter().enumerate().map(of_grain).sum()
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Velocities of a stated kind, with zero momentum and an exact temperature.
 
+use rayon::prelude::*;
+
 use super::super::model::{InitialVelocities, Scenario};
 use crate::matter::gas::Gas;
 use crate::random::{Phase, Stream, Streams};
@@ -64,10 +66,10 @@ pub(super) fn velocities<V: Vector>(scenario: &Scenario<V>, species: Option<&[u8
     let streams = Streams::new(scenario.seed).at(0, Phase::InitialVelocities);
     let draw = |component: fn(&mut Stream) -> f64| -> Vec<V> {
         let one = |id| {
-            let mut random = streams.stream(id);
+            let mut random = streams.stream(u64::from(id));
             V::from_fn(|_| component(&mut random))
         };
-        (0..u64::from(scenario.count)).map(one).collect()
+        (0..scenario.count).into_par_iter().map(one).collect()
     };
     let mut velocities = match scenario.initial.velocities {
         InitialVelocities::Maxwell(_) => draw(Stream::gaussian),
