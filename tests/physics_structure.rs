@@ -38,13 +38,13 @@ fn structure(seed: u64) -> [f64; 2] {
     for look in 0..LOOKS {
         // Times, not numbers of collisions: at a collision there is always a pair in contact.
         trial.advance_to_either(BETWEEN * (look + 1) as f64, f64::INFINITY).unwrap();
-        let snapshot = Snapshot { gas: &trial.gas, totals: &trial.totals };
+        let snapshot = Snapshot::new(&trial.gas, &trial.totals);
         waves.profiles(&snapshot);
         pairs.profiles(&snapshot);
     }
     assert_eq!(trial.invalid_states(), 0);
     assert!((trial.temperature() - 1.0).abs() < 1e-9);
-    let snapshot = Snapshot { gas: &trial.gas, totals: &trial.totals };
+    let snapshot = Snapshot::new(&trial.gas, &trial.totals);
     let mean_of = |measure: &dyn Measure<DVec2>| measure.conclusion(&snapshot, 0.0).0.remove(0).values;
     [long_waves(&mean_of(&waves)), contact(&mean_of(&pairs))]
 }

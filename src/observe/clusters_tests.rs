@@ -28,7 +28,7 @@ fn placed_grains_with_known_clusters() {
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
     let (gas, totals) = &state;
-    let profiles = measure.profiles(&Snapshot { gas, totals });
+    let profiles = measure.profiles(&Snapshot::new(gas, totals));
     // Sizes 1; 2 and 3.
     assert_eq!(profiles[0].values[..3], [vec![1.0, 2.0], vec![1.0, 1.0], vec![1.0, 2.0]]);
     assert_eq!(profiles[0].values[3], [1.0 / 6.0, 5.0 / 6.0]);

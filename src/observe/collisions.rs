@@ -1,6 +1,5 @@
 //! `collisions`: how often grains collide, and how far they get in between.
 
-use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Cadence, Column, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_rate, steady_ratio};
 use super::units::{RATE, column};
@@ -36,8 +35,7 @@ const ABOUT_LOCAL_FLOW: f64 = -2.0;
 
 /// Collisions per particle, mean speed [length/time].
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> [f64; 2] {
-    let flow = LocalFlow::of(snapshot.gas, grains_of_a_bin::<V>());
-    [snapshot.totals.collisions_per_particle, flow.mean_speed(snapshot.gas)]
+    [snapshot.totals.collisions_per_particle, snapshot.local_flow().mean_speed(snapshot.gas)]
 }
 
 /// Time, collisions per particle, and the path that a grain has gone since the first row, `[row]`.

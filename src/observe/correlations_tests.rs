@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 fn profile<V: Vector>(setting: &Setting<V>, gas: &Gas<V>) -> Vec<Vec<f64>> {
     let totals = Totals::default();
     let mut measure = Correlations::new(setting).unwrap();
-    measure.profiles(&Snapshot { gas, totals: &totals })[0].values.clone()
+    measure.profiles(&Snapshot::new(gas, &totals))[0].values.clone()
 }
 
 /// One grain in the middle of each raster cell of a square of 16, moving along `direction` as sin kx.

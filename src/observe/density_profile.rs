@@ -76,7 +76,7 @@ mod tests {
         positions.push(DVec3::new(1.0, 3.0, 1.0));
         let gas = bed.gas(2.5, positions, vec![DVec3::ZERO; 5]);
         let totals = Totals::default();
-        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot { gas: &gas, totals: &totals });
+        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot::new(&gas, &totals));
         assert_eq!(profiles[0].time, 2.5);
         assert_eq!(profiles[0].values[0], [1.0, 3.0, 5.0]);
         // A slice holds 16, a grain π/6.
@@ -94,7 +94,7 @@ mod tests {
         gas.species = vec![Grain { diameter: 1.0, mass: 1.0 }, Grain { diameter: 0.5, mass: 1.0 }];
         gas.parts_mut().2.species = Some(vec![0, 1]);
         let totals = Totals::default();
-        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot { gas: &gas, totals: &totals });
+        let profiles = DensityProfile::new(&bed.setting).profiles(&Snapshot::new(&gas, &totals));
         assert!((profiles[0].values[1][2] - PI / 96.0 * 1.125).abs() < 1e-15);
         assert_eq!(profiles[0].values[1][..2], [0.0, 0.0]);
     }

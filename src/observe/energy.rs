@@ -1,13 +1,11 @@
 //! `energy`: kinetic energy, temperatures, collisions and grains at every recording.
 
-use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
 use super::moments::{kinetic_energy, momentum, momentum_scale, rotational_energy, temperature};
 use super::samples::figure;
 use super::setting::Setting;
 use super::species_temperature;
 use super::units::{ENERGY, PURE, column};
-use crate::matter::gas::Gas;
 use crate::space::Vector;
 use crate::statistics::Estimate;
 
@@ -45,6 +43,17 @@ impl<V: Vector> Energy<V> {
         Energy { is_free, reduced_inertia, species: setting.species, start: None }
     }
 
+    /// Values of the columns before those about the local flow.
+    fn sums(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        self.remember_start(snapshot);
+        let (gas, totals) = (snapshot.gas, snapshot.totals);
+        let temperature = if gas.is_empty() { f64::NAN } else { temperature(gas) };
+        let mut values =
+            vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64];
+        values.extend(self.reduced_inertia.map(|z| rotational_energy(gas, z)));
+        values
+    }
+
     /// Names of the temperatures about the local flow, with units.
     fn local_columns(&self) -> Vec<Column> {
         let mut columns = vec![column("granular_temperature", ENERGY)];
@@ -55,11 +64,11 @@ impl<V: Vector> Energy<V> {
     }
 
     /// The temperatures about the local flow; NaN where there are too few grains.
-    fn local_values(&self, gas: &Gas<V>) -> Vec<f64> {
-        let flow = LocalFlow::of(gas, grains_of_a_bin::<V>());
+    fn local_values(&self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        let (gas, flow) = (snapshot.gas, snapshot.local_flow());
         let mut values = vec![flow.temperature().unwrap_or(f64::NAN)];
         if self.species > 0 {
-            let of_species = species_temperature::temperatures(gas, &flow);
+            let of_species = species_temperature::temperatures(gas, flow);
             values.extend(&of_species);
             values.extend(of_species.iter().skip(1).map(|temperature| temperature / of_species[0]));
             // A gas that was made without its species tells nothing of them.
@@ -105,13 +114,14 @@ impl<V: Vector> Measure<V> for Energy<V> {
     }
 
     fn values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
-        self.remember_start(snapshot);
-        let Snapshot { gas, totals } = snapshot;
-        let temperature = if gas.is_empty() { f64::NAN } else { temperature(gas) };
-        let mut values =
-            vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64];
-        values.extend(self.reduced_inertia.map(|z| rotational_energy(gas, z)));
-        values.extend(self.local_values(gas));
+        let mut values = self.sums(snapshot);
+        values.extend(self.local_values(snapshot));
+        values
+    }
+
+    fn brief_values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        let mut values = self.sums(snapshot);
+        values.resize(Measure::<V>::columns(self).len(), f64::NAN);
         values
     }
 
@@ -126,7 +136,7 @@ impl<V: Vector> Measure<V> for Energy<V> {
         ];
         let rotation = self.reduced_inertia.map(|z| rotational_energy(snapshot.gas, z));
         figures.extend(rotation.map(|energy| figure("rotational_energy", exact(Some(energy)))));
-        let local = self.local_columns().into_iter().zip(self.local_values(snapshot.gas));
+        let local = self.local_columns().into_iter().zip(self.local_values(snapshot));
         figures.extend(local.map(|(column, value)| figure(&column.name, exact(Some(value)))));
         (Vec::new(), figures)
     }

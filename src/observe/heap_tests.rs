@@ -94,7 +94,7 @@ fn the_surface_is_a_profile_and_the_slope_a_series() {
     let mut heap = Heap::new(&bed.setting).unwrap();
     let values = show(&mut heap, &state);
     assert!((values[0] - 0.5).abs() < 1e-12 && values[1] == 20.0);
-    let profiles = heap.profiles(&Snapshot { gas: &state.0, totals: &state.1 });
+    let profiles = heap.profiles(&Snapshot::new(&state.0, &state.1));
     assert_eq!(profiles[0].values[0][20], 41.0);
     assert_eq!(profiles[0].values[1][19..22], [19.0, 20.0, 19.0]);
 }

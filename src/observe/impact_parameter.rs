@@ -188,7 +188,7 @@ mod tests {
             let states = collided(&bed, 0.0);
             figure_of(&mut measure, &states, 1.0, "impact_c");
             let (gas, totals) = &states[2];
-            measure.conclusion(&Snapshot { gas, totals }, 1.0).0.remove(0).values
+            measure.conclusion(&Snapshot::new(gas, totals), 1.0).0.remove(0).values
         }
         let (flat, deep) = (density::<DVec2>(), density::<DVec3>());
         for bin in 0..IMPACT_BINS {

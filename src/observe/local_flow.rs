@@ -208,7 +208,8 @@ impl<V: Vector> Flow<V> {
     #[inline]
     fn coordinates(&self, position: V) -> [f64; 3] {
         let place = position - self.centre;
-        [self.basis[0].dot(place), self.basis[1].dot(place), self.basis[2].dot(place)]
+        // Along an axis that the space does not have nothing is to be multiplied.
+        std::array::from_fn(|k| if k < V::DIMENSION { self.basis[k].dot(place) } else { 0.0 })
     }
 
     /// The same behind φ₀ = 1/√M.
@@ -221,18 +222,23 @@ impl<V: Vector> Flow<V> {
     /// `velocity` about the flow at `position` [length/time].
     #[inline]
     pub(super) fn rest(&self, position: V, velocity: V) -> V {
-        let slopes = self.coordinates(position).into_iter().zip(self.slopes);
-        slopes.fold(velocity - self.velocity, |rest, (coordinate, slope)| rest - slope * coordinate)
+        self.rest_at(self.coordinates(position), velocity)
+    }
+
+    /// The same, of the coordinates of the position.
+    #[inline]
+    fn rest_at(&self, coordinates: [f64; 3], velocity: V) -> V {
+        (0..V::DIMENSION).fold(velocity - self.velocity, |rest, k| rest - self.slopes[k] * coordinates[k])
     }
 
     /// The velocity of a grain about the flow, enlarged by what the grain itself moves the flow: of variance T/m in a
     /// Maxwell gas, (v − u)/√(1 − h) with h = m Σ φ_k².
     #[inline]
     pub(crate) fn peculiar(&self, mass: f64, position: V, velocity: V) -> V {
-        let squares: f64 =
-            self.coordinates(position).into_iter().map(|coordinate| coordinate * coordinate).sum();
+        let coordinates = self.coordinates(position);
+        let squares: f64 = coordinates.into_iter().map(|coordinate| coordinate * coordinate).sum();
         let free = 1.0 - mass * (1.0 / self.mass + squares);
-        let rest = self.rest(position, velocity);
+        let rest = self.rest_at(coordinates, velocity);
         if free > DEPENDENT { rest * (1.0 / free.sqrt()) } else { V::ZERO }
     }
 }
@@ -299,7 +305,7 @@ impl<V: Vector> LocalFlow<V> {
                 let (position, velocity) = (gas.positions()[row], gas.velocities()[row]);
                 flow.peculiar(gas.grain_at(row).mass, position, velocity).length()
             };
-            rows.map(speed).sum::<f64>()
+            rows.fold(0.0, |sum, rows| rows.fold(sum, |sum, row| sum + speed(row)))
         });
         let grains = self.grains();
         if grains == 0 { 0.0 } else { bins.into_iter().flatten().sum::<f64>() / grains as f64 }
@@ -310,15 +316,15 @@ impl<V: Vector> LocalFlow<V> {
         self.flows.iter().flatten().fold(V::ZERO, |sum, flow| sum + flow.squares)
     }
 
-    /// What `fold` makes of each bin, with its flow and its rows; `None` where a bin says nothing.
+    /// What `fold` makes of each bin, with its flow and its rows, in runs of neighbouring ones; `None` where a bin says nothing.
     pub(crate) fn each_bin<S: Send>(
         &self,
         gas: &Gas<V>,
-        fold: impl Fn(&Flow<V>, &mut dyn Iterator<Item = usize>) -> S + Sync,
+        fold: impl Fn(&Flow<V>, &mut dyn Iterator<Item = Range<usize>>) -> S + Sync,
     ) -> Vec<Option<S>> {
         let bins = self.flows.par_iter().enumerate();
         bins.map(|(bin, flow)| {
-            let mut rows = self.bins.rows(gas, bin).flatten();
+            let mut rows = self.bins.rows(gas, bin);
             flow.as_ref().map(|flow| fold(flow, &mut rows))
         })
         .collect()
@@ -329,10 +335,14 @@ impl<V: Vector> LocalFlow<V> {
 fn flow<V: Vector>(gas: &Gas<V>, bins: Bins, bin: usize) -> Option<Flow<V>> {
     let first = bins.rows(gas, bin).find(|rows| !rows.is_empty())?.start;
     let origin = [gas.positions()[first], gas.velocities()[first]];
+    let alike = gas.species.is_empty().then_some(gas.grain.mass);
     let mut sums = Sums::new();
-    for row in bins.rows(gas, bin).flatten() {
-        let (place, velocity) = (gas.positions()[row] - origin[0], gas.velocities()[row] - origin[1]);
-        sums.add(gas.grain_at(row).mass, place, velocity);
+    for rows in bins.rows(gas, bin) {
+        let grains = gas.positions()[rows.clone()].iter().zip(&gas.velocities()[rows.clone()]);
+        for (row, (place, velocity)) in rows.zip(grains) {
+            let mass = alike.unwrap_or_else(|| gas.grain_at(row).mass);
+            sums.add(mass, *place - origin[0], *velocity - origin[1]);
+        }
     }
     Some(sums.flow(origin, bins.has_gradient)).filter(|flow| flow.freedom() > 0)
 }

@@ -107,7 +107,7 @@ fn peculiar_velocities_of_a_mixture_have_the_variance_of_their_species() {
         for bin in flow
             .each_bin(&gas, |flow, rows| {
                 let mut sums = [[0.0, 0.0]; 2];
-                for row in rows {
+                for row in rows.flatten() {
                     let grain = gas.grain_at(row);
                     let c = flow.peculiar(grain.mass, gas.positions()[row], gas.velocities()[row]);
                     let sum = &mut sums[usize::from(grain.mass > 1.0)];

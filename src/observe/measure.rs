@@ -1,17 +1,22 @@
 //! What a measure is, and the forms its results take.
 
+use std::sync::OnceLock;
+
+use super::local_flow::{LocalFlow, grains_of_a_bin};
 use crate::engine::report::Totals;
 use crate::matter::gas::Gas;
 use crate::space::Vector;
 use crate::statistics::Trend;
 
 /// The state of a run at a step end, as a measure sees it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Snapshot<'a, V: Vector> {
     /// The grains.
     pub gas: &'a Gas<V>,
     /// What happened since the start of the run.
     pub totals: &'a Totals<V>,
+    /// The flow of the grains, once a measure has asked for it.
+    flow: OnceLock<LocalFlow<V>>,
 }
 
 /// Which of the states of a run one is: two that agree in this are the same.
@@ -27,7 +32,17 @@ pub struct Place {
     pub grains: usize,
 }
 
-impl<V: Vector> Snapshot<'_, V> {
+impl<'a, V: Vector> Snapshot<'a, V> {
+    /// The state of `gas` after all that `totals` say.
+    pub fn new(gas: &'a Gas<V>, totals: &'a Totals<V>) -> Self {
+        Snapshot { gas, totals, flow: OnceLock::new() }
+    }
+
+    /// The local flow in bins for temperatures; found once for all measures that ask for it.
+    pub(super) fn local_flow(&self) -> &LocalFlow<V> {
+        self.flow.get_or_init(|| LocalFlow::of(self.gas, grains_of_a_bin::<V>()))
+    }
+
     /// Which of the states of its run it shows.
     pub fn place(&self) -> Place {
         Place {
@@ -130,7 +145,7 @@ pub trait Measure<V: Vector>: Send {
     /// Looks at the gas at one of its times.
     fn sample(&mut self, _snapshot: &Snapshot<'_, V>) {}
 
-    /// Columns of the series that it fills at every recording.
+    /// Columns of the series that it fills at recordings.
     fn columns(&self) -> Vec<Column> {
         Vec::new()
     }
@@ -140,7 +155,15 @@ pub trait Measure<V: Vector>: Send {
         Vec::new()
     }
 
-    /// Profiles of this moment, stored at every recording.
+    /// The same at a recording between two full ones: NaN where a value takes a look at every grain and its neighbours.
+    fn brief_values(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
+        match self.effort() {
+            Effort::Sums if !self.is_costly() => self.values(snapshot),
+            _ => vec![f64::NAN; self.columns().len()],
+        }
+    }
+
+    /// Profiles of this moment, stored at full recordings.
     fn profiles(&mut self, _snapshot: &Snapshot<'_, V>) -> Vec<Profile> {
         Vec::new()
     }

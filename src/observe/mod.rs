@@ -215,7 +215,7 @@ mod tests {
                 show(&mut *measure, state);
             }
             let (gas, totals) = &states[4];
-            for figure in measure.conclusion(&measure::Snapshot { gas, totals }, 0.0).1 {
+            for figure in measure.conclusion(&measure::Snapshot::new(gas, totals), 0.0).1 {
                 assert!(seen.insert(format!("figure {}", figure.name)), "{}", figure.name);
             }
         }

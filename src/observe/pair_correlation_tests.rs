@@ -169,7 +169,7 @@ fn recordings_are_averaged_and_resume() {
     let mut measure = PairCorrelation::new(&bed.setting).unwrap();
     states.iter().for_each(|state| drop(show(&mut measure, state)));
     let (gas, totals) = (&states[19].0, Totals::default());
-    let (profiles, _) = measure.conclusion(&Snapshot { gas, totals: &totals }, 10.0);
+    let (profiles, _) = measure.conclusion(&Snapshot::new(gas, &totals), 10.0);
     let late: Vec<f64> = states[10..].iter().map(|(gas, _)| measure.look(gas)[0][50]).collect();
     // The ends stand for half as much time.
     let late = late.iter().sum::<f64>() - 0.5 * (late[0] + late[9]);

@@ -1,6 +1,5 @@
 //! `pressure`: the equation of state of a periodic gas, kinetic and collisional (Miller 2004, equation 4.44).
 
-use super::local_flow::{LocalFlow, grains_of_a_bin};
 use super::measure::{Cadence, Column, Effort, Figure, Measure, Profile, Snapshot};
 use super::samples::{Samples, figure, steady_rate, steady_ratio};
 use super::setting::Setting;
@@ -81,8 +80,8 @@ fn thermal(first: &[f64], last: &[f64]) -> f64 {
 }
 
 fn row<V: Vector>(snapshot: &Snapshot<'_, V>) -> Row {
-    let Snapshot { gas, totals } = snapshot;
-    let temperature = LocalFlow::of(gas, grains_of_a_bin::<V>()).temperature().unwrap_or(f64::NAN);
+    let (gas, totals) = (snapshot.gas, snapshot.totals);
+    let temperature = snapshot.local_flow().temperature().unwrap_or(f64::NAN);
     [gas.time(), temperature, totals.counts.carried_momentum, gas.len() as f64]
 }
 

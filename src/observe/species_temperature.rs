@@ -8,6 +8,8 @@
 //! which follows from velocities that are independent and of variance T_s/m_s. As Σ_t Pᵗ = 1 it is (N_s − tr Pˢ) T where all
 //! temperatures are T. Summed over bins these are as many linear equations as there are species.
 
+use std::ops::Range;
+
 use super::local_flow::{Flow, LocalFlow};
 use crate::matter::gas::Gas;
 use crate::space::Vector;
@@ -38,12 +40,12 @@ impl Equations {
         self.squares.iter_mut().zip(&other.squares).for_each(|(sum, part)| *sum += part);
     }
 
-    /// The equations of the grains in these `rows` about their flow.
-    fn of_bin<V: Vector>(gas: &Gas<V>, flow: &Flow<V>, rows: &mut dyn Iterator<Item = usize>) -> Self {
+    /// The equations of the grains in these runs of `rows` about their flow.
+    fn of_bin<V: Vector>(gas: &Gas<V>, flow: &Flow<V>, rows: &mut dyn Iterator<Item = Range<usize>>) -> Self {
         let mut equations = Self::none(gas.species.len());
         let mut products = vec![[[0.0; 4]; 4]; gas.species.len()];
         let Some(species) = &gas.columns().species else { return equations };
-        for row in rows {
+        for row in rows.flatten() {
             let s = usize::from(species[row]);
             let mass = gas.species[s].mass;
             let coordinates = flow.all_coordinates(gas.positions()[row]);

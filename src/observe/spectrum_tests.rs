@@ -141,8 +141,8 @@ fn it_samples_a_gas() {
     assert_eq!(Measure::<DVec2>::cadence(&measure), Cadence::Every(0.1));
     let gas = bed.gas(0.5, vec![DVec2::new(1.0, 5.0), DVec2::new(1.5, 4.5)], vec![DVec2::ZERO; 2]);
     let totals = Totals::default();
-    measure.sample(&Snapshot { gas: &gas, totals: &totals });
-    measure.sample(&Snapshot { gas: &gas, totals: &totals });
+    measure.sample(&Snapshot::new(&gas, &totals));
+    measure.sample(&Snapshot::new(&gas, &totals));
     assert_eq!((measure.counts.len(), measure.counts[2]), (SLICES, 2));
     let states = [(gas, totals)];
     assert_eq!(figure_of(&mut measure, &states, 0.0, "spectrum_slope"), (None, None));

@@ -100,7 +100,7 @@ mod tests {
 
     fn profile<V: Vector>(setting: &Setting<V>, gas: &Gas<V>) -> Vec<Vec<f64>> {
         let totals = Totals::default();
-        TemperatureProfile::new(setting).profiles(&Snapshot { gas, totals: &totals })[0].values.clone()
+        TemperatureProfile::new(setting).profiles(&Snapshot::new(gas, &totals))[0].values.clone()
     }
 
     #[test]

@@ -101,7 +101,7 @@ pub(crate) fn random_velocities<V: Vector>(seed: u64, grains: usize) -> Vec<V> {
 
 /// Shows a measure one state, as a sample and as a recording; returns what it said.
 pub(crate) fn show<V: Vector>(measure: &mut dyn Measure<V>, (gas, totals): &State<V>) -> Vec<f64> {
-    let snapshot = Snapshot { gas, totals };
+    let snapshot = Snapshot::new(gas, totals);
     measure.sample(&snapshot);
     let values = measure.values(&snapshot);
     assert_eq!(values.len(), measure.columns().len(), "{}", measure.name());
@@ -122,7 +122,7 @@ pub(crate) fn figure_of<V: Vector>(
         show(measure, state);
     }
     let (gas, totals) = states.last().unwrap();
-    let (_, figures) = measure.conclusion(&Snapshot { gas, totals }, from);
+    let (_, figures) = measure.conclusion(&Snapshot::new(gas, totals), from);
     let found = figures.iter().find(|f| f.name == figure).unwrap_or_else(|| panic!("no {figure}"));
     (found.value, found.standard_error)
 }
@@ -149,7 +149,7 @@ pub(crate) fn assert_resumes<V: Vector>(make: impl Fn() -> Box<dyn Measure<V>>, 
         assert_eq!(bits(said.0), bits(said.1), "{}", first.name());
     }
     let (gas, totals) = states.last().unwrap();
-    let snapshot = Snapshot { gas, totals };
+    let snapshot = Snapshot::new(gas, totals);
     // The shortest decimal that reads back the same: equal text is equal bits.
     let text = |measure: &dyn Measure<V>| format!("{:?}", measure.conclusion(&snapshot, 1.0));
     assert_eq!(text(&*first), text(&*second));

@@ -115,11 +115,13 @@ fn tally<V: Vector>(gas: &Gas<V>, flow: &LocalFlow<V>) -> Option<Tally> {
     let (positions, velocities) = (gas.positions(), gas.velocities());
     let bins = flow.each_bin(gas, |flow, rows| {
         let mut tally = Tally::new();
-        for row in rows {
-            let mass = gas.grain_at(row).mass;
-            let scale = alike.unwrap_or_else(|| scale(mass));
-            tally.count(flow.peculiar(mass, positions[row], velocities[row]) * scale);
-        }
+        rows.for_each(|rows| {
+            for row in rows {
+                let mass = alike.map_or_else(|| gas.grain_at(row).mass, |_| gas.grain.mass);
+                let scale = alike.unwrap_or_else(|| scale(mass));
+                tally.count(flow.peculiar(mass, positions[row], velocities[row]) * scale);
+            }
+        });
         tally
     });
     let mut total = Tally::new();

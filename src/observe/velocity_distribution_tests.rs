@@ -66,7 +66,7 @@ fn a_maxwell_gas_has_the_moments_one() {
     assert!(!is_maxwell(&moving(velocities)));
     // χ² over bins that are not nearly empty has their number as mean and twice it as variance.
     let mut measure = VelocityDistribution::new(&setting_of(DVec2::splat(4.0), [1, 1, 1]).setting);
-    let profiles = measure.profiles(&Snapshot { gas: &gas, totals: &Totals::default() });
+    let profiles = measure.profiles(&Snapshot::new(&gas, &Totals::default()));
     let [_, density, error, maxwell] = &profiles[0].values[..] else { panic!("four columns") };
     let squares: Vec<f64> = (0..BINS)
         .filter(|&bin| maxwell[bin] * WIDTH * 200_000.0 > 20.0)

@@ -169,7 +169,7 @@ mod tests {
         let (r_squared, _) = figure_of(&mut measure, &states, 10.0, "velocity_profile_r_squared");
         assert!((r_squared.unwrap() - 1.0).abs() < 1e-14);
         let (gas, totals) = &states[29];
-        let (profiles, _) = measure.conclusion(&Snapshot { gas, totals }, 10.0);
+        let (profiles, _) = measure.conclusion(&Snapshot::new(gas, totals), 10.0);
         assert_eq!(profiles[0].values[0][..2], [1.0, 3.0]);
         assert!((profiles[0].values[1][10] - (21.0 / 40.0 - 0.5)).abs() < 1e-15);
     }

@@ -206,7 +206,7 @@ impl<'s, V: Vector> Look<'s, V> {
             return;
         }
         gas.species.clone_from(&self.scenario.species);
-        let snapshot = Snapshot { gas: &gas, totals: &totals };
+        let snapshot = Snapshot::new(&gas, &totals);
         let mut row = vec![gas.time()];
         for measure in &mut self.measures {
             if measure.cadence() == Cadence::Spread {
@@ -224,7 +224,7 @@ impl<'s, V: Vector> Look<'s, V> {
         if let Some((gas, totals)) = &self.last {
             let from = self.tables.series.first().map_or(0.0, |row| row[0]);
             for measure in &self.measures {
-                self.tables.profiles.extend(measure.conclusion(&Snapshot { gas, totals }, from).0);
+                self.tables.profiles.extend(measure.conclusion(&Snapshot::new(gas, totals), from).0);
             }
         }
         self.tables

@@ -280,11 +280,12 @@ impl<'s, V: Vector> Simulation<'s, V> {
     /// Shows the gas to every measure whose time has come.
     fn take_samples(&mut self) {
         let (time, progress) = (self.gas.time(), self.progress());
+        let snapshot = Snapshot::new(&self.gas, &self.totals);
         for k in 0..self.measures.len() {
             if !self.sample_due(&*self.measures[k], self.samples[k]).is_reached(time, progress) {
                 continue;
             }
-            self.measures[k].sample(&Snapshot { gas: &self.gas, totals: &self.totals });
+            self.measures[k].sample(&snapshot);
             // A long step may pass several nominal times: one look stands for all of them.
             self.samples[k] = self.next_sample(&*self.measures[k]);
         }
@@ -362,7 +363,7 @@ impl<'s, V: Vector> Simulation<'s, V> {
     }
     /// The measures, to be asked for values, profiles and conclusions, with what they look at.
     pub fn observation(&mut self) -> (&mut [Box<dyn Measure<V>>], Snapshot<'_, V>) {
-        (&mut self.measures, Snapshot { gas: &self.gas, totals: &self.totals })
+        (&mut self.measures, Snapshot::new(&self.gas, &self.totals))
     }
 
     /// What was counted in each cell of the gas since the start or since the counts were last taken, `[cell]`;

@@ -7,16 +7,18 @@
 //! halves, so that measures with different l sample at common times.
 //!
 //! l follows from work that is counted, not from a clock: samples may take [`SHARE`] of the work of the run so far, carried on
-//! to its end, or [`SMALL`] altogether where that is more.
+//! to its end, or about [`SMALL`] altogether where that is more.
 
 use super::schedule::Due;
 use crate::observe::measure::Effort;
 use crate::random::{Phase, Streams};
 
 /// Share of the work of a run that the samples of each [`Effort`] may take.
-const SHARE: f64 = 0.03;
-/// Work that samples may always take, in grains advanced by a step: about a tenth of a second.
+const SHARE: f64 = 0.02;
+/// Work that samples may always take, in grains advanced by a step, about a tenth of a second; and up to how many grains: of
+/// twice as many they may take half of it.
 const SMALL: f64 = 2e6;
+const FEW: f64 = 2e4;
 /// Work of an event of an engine without steps, in grains advanced by a step.
 const EVENT: f64 = 40.0;
 /// Work of showing one grain of such an engine: it has to be brought to the common time and sorted.
@@ -60,11 +62,12 @@ impl Work {
     /// The cut for which samples of that `effort` take no more than their share; the run is at `progress`.
     fn cut(self, effort: Effort, progress: f64) -> u32 {
         let (each, finest) = match effort {
-            Effort::Sums => (0.5, FINEST),
+            Effort::Sums => (1.0, FINEST),
             Effort::Table => (2.0, FINEST_FOR_TABLES),
         };
         let expected = if progress > 0.0 { self.done / progress } else { 0.0 };
-        let affordable = SMALL.max(SHARE * expected) / (self.grains * (self.showing + each));
+        let small = SMALL * (FEW / self.grains).min(1.0);
+        let affordable = small.max(SHARE * expected) / (self.grains * (self.showing + each));
         (COARSEST..finest)
             .take_while(|cut| f64::from(2_u32 << cut) <= affordable)
             .last()
@@ -137,7 +140,7 @@ mod tests {
 
     #[test]
     fn samples_follow_each_other_to_the_end() {
-        let work = Work::of_steps(1_000_000_000, 1000);
+        let work = Work::of_steps(1_000_000_000, 900);
         let (mut number, mut progress, mut taken) = (START, 0.0, 0);
         while let Due::Progress(place) = due(3, number) {
             assert!(place > progress || taken == 0);
@@ -152,10 +155,10 @@ mod tests {
     #[test]
     fn samples_are_as_many_as_the_work_deserves() {
         let of = |work: Work, effort| 1 << work.cut(effort, 0.5);
-        // 3 % of twice 50 million, over half a unit for each of 10⁵ grains: 60.
-        assert_eq!(of(Work::of_steps(50_000_000, 100_000), Effort::Sums), 32);
+        // 2 % of twice 50 million, over a unit for each of 10⁵ grains: 20.
+        assert_eq!(of(Work::of_steps(50_000_000, 100_000), Effort::Sums), 16);
         // A small gas may always have some.
-        assert_eq!(of(Work::of_steps(0, 1000), Effort::Sums), 2048);
+        assert_eq!(of(Work::of_steps(0, 900), Effort::Sums), 2048);
         assert_eq!(of(Work::of_steps(0, 1000), Effort::Table), 512);
         // A million spheres that collide once are shown four times.
         assert_eq!(of(Work::of_events(400_000, 1_000_000), Effort::Table), 4);

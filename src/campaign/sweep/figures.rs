@@ -23,7 +23,7 @@ pub(super) fn own_figures(scenario: &AnyScenario) -> Vec<String> {
 fn concluded<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let gas = Gas::empty(scenario.grid(), scenario.grain);
     let totals = Totals::default();
-    let snapshot = Snapshot { gas: &gas, totals: &totals };
+    let snapshot = Snapshot::new(&gas, &totals);
     let measures = measures(&scenario.setting(), scenario.record.measures.as_deref());
     let figures = measures.iter().flat_map(|measure| measure.conclusion(&snapshot, 0.0).1);
     figures.map(|figure| figure.name).filter(|name| !is_of_every_run(name)).collect()
