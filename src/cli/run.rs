@@ -147,12 +147,6 @@ fn conclude(result: Result<Outcome, RunError>, quiet: bool) -> Exit {
     match result {
         Ok(outcome) => {
             if !quiet {
-                if !outcome.begun_anew.is_empty() {
-                    let measures = outcome.begun_anew.join(", ");
-                    eprintln!(
-                        "warning: figures of {measures} begin where the run was resumed: a version before this one observed otherwise"
-                    );
-                }
                 print!("{}", closing_words(&outcome));
             }
             if outcome.interrupted { Exit::Interrupted } else { Exit::Done }

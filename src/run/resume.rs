@@ -112,10 +112,8 @@ impl Resumption {
         };
         let begun_anew = match (&scenario, &state) {
             _ if older::observes_alike(history.value(OBSERVATION_KEY)) => Vec::new(),
-            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => older::begun_anew(scenario, state),
-            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => {
-                older::begun_anew(scenario, state)
-            }
+            (AnyScenario::Two(scenario), State::Two(Some((state, _)))) => begun_anew(scenario, state),
+            (AnyScenario::Three(scenario), State::Three(Some((state, _)))) => begun_anew(scenario, state),
             _ => Vec::new(),
         };
         let resumption = Resumption { log, history, scenario, state, begun_anew, changes };
@@ -216,6 +214,13 @@ impl Resumption {
         let reached = |reason: EndReason| (reason.name(), Progress { time: state.time, steps, collisions });
         Ok(simulation.end_reason().map(reached))
     }
+}
+
+/// Measures that cannot take over what an older log remembers in `state`; none where the run cannot go on from it, which it says
+/// itself.
+fn begun_anew<V: Vector>(scenario: &Scenario<V>, state: &SavedState<'_, V>) -> Vec<&'static str> {
+    Simulation::resume(scenario, state.clone())
+        .map_or_else(|_| Vec::new(), |simulation| simulation.begun_anew().to_vec())
 }
 
 /// How far a run has come: time, steps, collisions per particle.

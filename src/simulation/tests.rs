@@ -316,3 +316,28 @@ fn a_source_does_not_climb_on_its_own_stream() {
     assert_eq!(poured, 100);
     assert!(highest > 9.9 && highest < 30.0, "{highest}");
 }
+
+#[test]
+fn measures_that_remember_otherwise_begin_anew_and_the_others_go_on() {
+    let scenario = scenario(
+        "dimension = 2\n[engine]\nkind = \"cba\"\ncell_size = 2.0\n[domain]\nsize = [20.0, 20.0]\n[particles]\ncount = 90\n\
+         restitution = 0.9\n[initial]\nvelocities = { maxwell = 1.0 }\n[run]\ntime = 9.0\n",
+    );
+    let gas = initial::build(&scenario, None).unwrap();
+    let mut simulation = Simulation::start(&scenario, gas, &mut NoLaps).unwrap();
+    for _ in 0..20 {
+        simulation.advance(&mut NoLaps, Horizon::NONE).unwrap();
+    }
+    let mut state = simulation.saved_state(0, 0);
+    assert!(Simulation::resume(&scenario, state.clone()).unwrap().begun_anew().is_empty());
+    // As earlier versions remembered it: no previous row, then rows of time, temperature, Σ p·s and grains.
+    let place = state.memories.iter().position(|(name, _)| name == "pressure").unwrap();
+    state.memories[place].1 = vec![0.0, 0.0, 1.0, 0.0, 90.0];
+    // Of this version it would be no memory of a run.
+    assert!(Simulation::resume(&scenario, state.clone()).is_err());
+    // Earlier versions counted the samples of every run from 1 on.
+    state.samples.fill(3);
+    let resumed = Simulation::resume(&scenario, state).unwrap();
+    assert_eq!(resumed.gas().time(), simulation.gas().time());
+    assert_eq!(resumed.begun_anew(), ["pressure"]);
+}
