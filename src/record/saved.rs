@@ -50,11 +50,11 @@ pub(crate) fn part<V: Vector>(state: &SavedState<'_, V>, rows: Range<usize>) -> 
         first_row: rows.start as u64,
         positions: vector_bytes(&columns.positions[rows.clone()]),
         velocities: vector_bytes(&columns.velocities[rows.clone()]),
-        ids: columns.ids[rows.clone()].iter().flat_map(|id| id.to_le_bytes()).collect(),
+        ids: bytes(rows.len(), columns.ids[rows.clone()].iter().copied(), u32::to_le_bytes),
         spins: columns.spins.as_ref().map(|spins| spin_bytes::<V>(&spins[rows.clone()])),
         species: columns.species.as_ref().map(|species| species[rows.clone()].to_vec()),
-        engine_numbers: numbers.iter().flat_map(|number| number.to_le_bytes()).collect(),
-        engine_words: engine_words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+        engine_numbers: bytes(numbers.len(), numbers.iter().copied(), f64::to_le_bytes),
+        engine_words: bytes(engine_words.len(), engine_words.iter().copied(), u32::to_le_bytes),
         ..Default::default()
     };
     if rows.start == 0 {
@@ -287,11 +287,27 @@ fn components<V: Vector>(vector: V) -> impl Iterator<Item = f64> {
 }
 
 fn vector_bytes<V: Vector>(vectors: &[V]) -> Vec<u8> {
-    vectors.iter().flat_map(|&vector| components(vector)).flat_map(f64::to_le_bytes).collect()
+    bytes(
+        vectors.len() * V::DIMENSION,
+        vectors.iter().flat_map(|&vector| components(vector)),
+        f64::to_le_bytes,
+    )
 }
 
 fn spin_bytes<V: Vector>(spins: &[V::Spin]) -> Vec<u8> {
-    spins.iter().flat_map(|spin| spin.as_ref()).flat_map(|component| component.to_le_bytes()).collect()
+    let components = spins.iter().flat_map(|spin| spin.as_ref()).copied();
+    bytes(spins.len() * V::DIMENSION, components, f64::to_le_bytes)
+}
+
+/// The bytes of `words`, about `expected` of them.
+fn bytes<T, const W: usize>(
+    expected: usize,
+    words: impl Iterator<Item = T>,
+    to_bytes: impl Fn(T) -> [u8; W],
+) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(expected * W);
+    words.for_each(|word| bytes.extend_from_slice(&to_bytes(word)));
+    bytes
 }
 
 /// `bytes` as words of W bytes; `None` where some are left over.

@@ -1,5 +1,6 @@
 //! What is looked at when a run is recorded.
 
+use super::shown::Shown;
 use crate::observe::measure::{Column, Dimension, Measure, Profile, Snapshot};
 use crate::simulation::Simulation;
 use crate::space::Vector;
@@ -28,18 +29,18 @@ impl Looks {
         Looks { stored, columns }
     }
 
-    /// Values of the columns, and profiles of this moment where they are wanted. Measures of what happens between two
-    /// looks begin anew.
+    /// Values of the columns, all of them at a full recording, and profiles of this moment where they are wanted. Measures of what
+    /// happens between two looks begin anew.
     pub(super) fn take<V: Vector>(
         &self,
         measures: &mut [Box<dyn Measure<V>>],
         snapshot: &Snapshot<'_, V>,
-        with_profiles: bool,
+        shown: Shown,
     ) -> (Vec<f64>, Vec<Profile>) {
         let (mut values, mut profiles) = (vec![snapshot.gas.time()], Vec::new());
         for (measure, _) in measures.iter_mut().zip(&self.stored).filter(|(_, stored)| **stored) {
-            values.extend(measure.values(snapshot));
-            if with_profiles {
+            values.extend(if shown.full { measure.values(snapshot) } else { measure.brief_values(snapshot) });
+            if shown.profiles {
                 profiles.extend(measure.profiles(snapshot));
             }
         }

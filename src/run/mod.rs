@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use serde_json::{Map, Value};
 
-use crate::engine::EngineError;
+use crate::engine::{EngineError, Horizon, Laps, NoLaps};
 use crate::observe::measure::Place;
 use crate::observe::moments;
 use crate::placing::write_whole;
@@ -161,14 +161,13 @@ pub struct Outcome {
     pub interrupted: bool,
     /// Seconds of each verb of the algorithm.
     pub laps: Vec<(&'static str, f64)>,
-    /// Measures that began anew when the run went on from a log of an earlier version.
-    pub begun_anew: Vec<&'static str>,
 }
 
 /// Hears of every step.
 pub type Listener<'a> = &'a mut (dyn FnMut(&Status) + Send);
 
-/// Runs `scenario` into `folder` until its end, or until `stop` turns true. `tell` hears of every step.
+/// Runs `scenario`, with as many recordings as its `record.share` lets it have, into `folder` until its end, or until `stop` turns
+/// true. `tell` hears of every step.
 pub fn run(
     scenario: &AnyScenario,
     folder: &Path,
@@ -176,8 +175,9 @@ pub fn run(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Outcome, RunError> {
+    let scenario = scenario.clone().with_affordable_recordings();
     // On a thread of the pool, parallel calls need not wake anybody to begin.
-    rayon::scope(|_| match scenario {
+    rayon::scope(|_| match &scenario {
         AnyScenario::Two(scenario) => run_in(scenario, folder, force, stop, tell),
         AnyScenario::Three(scenario) => run_in(scenario, folder, force, stop, tell),
     })
@@ -190,10 +190,14 @@ fn run_in<V: Vector>(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    let watch = Stopwatch::default();
+    let mut watch = Stopwatch::default();
+    watch.start(INITIAL_STATE);
     let gas = initial_gas(scenario)?;
     let folder = RunFolder::claim(folder, force)?;
-    let mut simulation = match Simulation::start(scenario, gas, &mut Stopwatch::default()) {
+    if scenario.initial.equilibrate > 0.0 {
+        watch.start(EQUILIBRATION);
+    }
+    let mut simulation = match Simulation::start(scenario, gas, &mut NoLaps) {
         Ok(simulation) => simulation,
         Err(error) => {
             folder.abandon();
@@ -203,6 +207,13 @@ fn run_in<V: Vector>(
     let recorder = Recorder::create(&log_of(&folder), &mut simulation)?;
     Run { folder, simulation, recorder, watch }.end_and_write(stop, tell)
 }
+
+/// The making of the initial state, in the laps of a run.
+const INITIAL_STATE: &str = "initial state";
+/// Elastic collisions before the run begins.
+const EQUILIBRATION: &str = "equilibration";
+/// Recordings and states, until they are written.
+const RECORDING: &str = "recording";
 
 /// Where the log of a run in `folder` stands.
 fn log_of(folder: &RunFolder) -> PathBuf {
@@ -222,7 +233,7 @@ impl<V: Vector> Run<'_, V> {
     fn end_and_write(self, stop: &AtomicBool, tell: Listener<'_>) -> Result<Outcome, RunError> {
         let Run { folder, mut simulation, mut recorder, mut watch } = self;
         let ended = go_on(&mut simulation, &mut recorder, &mut watch, stop, tell);
-        watch.stop();
+        watch.start(RECORDING);
         let ending = match ended {
             Ok(ending) => ending,
             Err(StepError::Log(error)) => return Err(error.into()),
@@ -232,6 +243,7 @@ impl<V: Vector> Run<'_, V> {
             }
         };
         let recorded = recorder.finish(&mut simulation)?;
+        watch.stop();
         let summary = write_files(&folder, &mut simulation, ending, &watch, &recorded)?;
         let folder = folder.settle()?;
         let units = simulation.scenario().units.clone();
@@ -241,7 +253,6 @@ impl<V: Vector> Run<'_, V> {
             units,
             interrupted: ending == Ending::Interrupted,
             laps: watch.laps().to_vec(),
-            begun_anew: simulation.begun_anew().to_vec(),
         })
     }
 }
@@ -309,10 +320,9 @@ fn go_on<V: Vector>(
     stop: &AtomicBool,
     tell: Listener<'_>,
 ) -> Result<Ending<'static>, StepError> {
-    use crate::engine::{Horizon, Laps};
     let mut stops = false;
     loop {
-        watch.start("recording");
+        watch.start(RECORDING);
         recorder.record_if_due(simulation).map_err(StepError::Log)?;
         tell(&status(simulation));
         if let Some(reason) = simulation.end_reason() {

@@ -94,7 +94,7 @@ impl Recorder {
         let mut writer = LogWriter::create(path, &header)?;
         let copied = copy_before(origin.log, origin.state, &mut writer, &looks.columns)?;
         let is_here = copied.series.last().is_some_and(|row| row[0] == simulation.gas().time())
-            && copied.last_hash == state_hash(simulation.gas());
+            && (copied.last_hash.is_empty() || copied.last_hash == state_hash(simulation.gas()));
         let recorded = Recorded {
             columns: looks.columns.clone(),
             series: copied.series,
@@ -191,10 +191,10 @@ impl Recorder {
         let (measures, snapshot) = simulation.observation();
         let looks = &self.looks;
         let (hash, ((values, profiles), frame)) = rayon::join(
-            || state_hash(snapshot.gas),
+            || if shown.full { state_hash(snapshot.gas) } else { String::new() },
             || {
                 let picture = || frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
-                (looks.take(measures, &snapshot, shown.profiles), shown.frame.then(picture))
+                (looks.take(measures, &snapshot, shown), shown.frame.then(picture))
             },
         );
         self.writer.recording(&Recording {

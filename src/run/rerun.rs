@@ -53,8 +53,8 @@ impl<'s, V: Vector> Running<'s, V> {
         Running { looks: Looks::of(&mut simulation), simulation, timetable }
     }
 
-    /// Takes a recording, the one that is due if one is: its values.
-    pub(super) fn recording(&mut self) -> Vec<f64> {
+    /// Takes a recording, the one that is due if one is: its values, and whether it is a full one.
+    pub(super) fn recording(&mut self) -> (Vec<f64>, bool) {
         let Running { simulation, timetable, looks } = self;
         let mut shown = Shown::ALL;
         if timetable.is_recording_due(simulation) {
@@ -62,11 +62,11 @@ impl<'s, V: Vector> Running<'s, V> {
             timetable.recorded(simulation);
         }
         let (measures, snapshot) = simulation.observation();
-        let (values, _) = looks.take(measures, &snapshot, shown.profiles);
+        let (values, _) = looks.take(measures, &snapshot, shown);
         if shown.fields {
             simulation.restart_cell_counts();
         }
-        values
+        (values, shown.full)
     }
 }
 
@@ -166,10 +166,10 @@ impl<'s, V: Vector> Rerun<'s, V> {
         Ok(there.end_reason().is_none() && !timetable.is_state_due(&there))
     }
 
-    /// Takes the recording that is due: names of the columns, and their values.
-    pub(super) fn recording(&mut self) -> (Vec<String>, Vec<f64>) {
-        let values = self.now_mut().recording();
-        (self.now().looks.columns.iter().map(|column| column.name.clone()).collect(), values)
+    /// Takes the recording that is due: names of the columns, their values, and whether it is a full one.
+    pub(super) fn recording(&mut self) -> (Vec<String>, Vec<f64>, bool) {
+        let (values, is_full) = self.now_mut().recording();
+        (self.now().looks.columns.iter().map(|column| column.name.clone()).collect(), values, is_full)
     }
 
     /// Saves the state that is due after so many `steps` and `events`, and lets `judge` look at it. Where a part of the run

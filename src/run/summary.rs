@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{NUMERICS, momentum_drift};
+use super::{EQUILIBRATION, INITIAL_STATE, NUMERICS, RECORDING, momentum_drift};
 use crate::machine::peak_memory_bytes;
 use crate::matter::state_hash::state_hash;
 use crate::observe::measure::Figure;
@@ -26,7 +26,7 @@ pub(super) enum Ending<'a> {
 }
 
 /// Verbs that do not advance the state.
-const NOT_ADVANCING: [&str; 3] = ["recording", "measures", "synchronise"];
+const NOT_ADVANCING: [&str; 5] = [INITIAL_STATE, EQUILIBRATION, RECORDING, "measures", "synchronise"];
 
 /// The summary of a run that has ended. What does not apply is null.
 pub(super) fn summary<V: Vector>(
@@ -147,6 +147,7 @@ fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) ->
         .filter(|(verb, _)| !NOT_ADVANCING.contains(verb))
         .map(|(_, seconds)| seconds)
         .sum();
+    let equilibration = watch.laps().iter().find(|(verb, _)| *verb == EQUILIBRATION);
     // Of a run that was resumed, only the work after that was done here.
     let totals = simulation.totals();
     let resumed = simulation.resumed();
@@ -159,6 +160,7 @@ fn what_it_cost<V: Vector>(simulation: &Simulation<'_, V>, watch: &Stopwatch) ->
     object(json!({
         "resumed_at": resumed.map(|at| at.time),
         "wall_seconds": watch.seconds(),
+        "equilibration_seconds": equilibration.map(|(_, seconds)| seconds),
         "advancing_seconds": advancing,
         "particle_steps_per_second": steps,
         "events_per_second": events,

@@ -9,8 +9,18 @@ use crate::space::Vector;
 
 /// Up to so many grains the columns stay in the caches of a processor.
 const CACHED_GRAINS: f64 = 2e5;
-/// Recording one grain: measures, hash, frame, compression [s].
-const RECORDING: f64 = 200e-9;
+/// Recording one grain in full: measures, hash, frame, compression; its part of the sums that every recording has; and what it
+/// costs to bring it to the time of the recording where an engine has no steps [s].
+const FULL_RECORDING: f64 = 115e-9;
+const BRIEF_RECORDING: f64 = 5e-9;
+const SYNCHRONISATION: f64 = 200e-9;
+/// Grains of which this many full recordings are always made, a fifth of a second altogether; of twice as many a quarter of
+/// them, so that those of a large and short run do not take longer than it.
+const ALWAYS_RECORDED: (f64, f64) = (1e4, 210.0);
+/// The fewest full recordings.
+const FEWEST_RECORDINGS: f64 = 4.0;
+/// Full recordings that take as long as one state, with all that happens until it is written.
+const RECORDINGS_PER_STATE: f64 = 2.0;
 /// Collisions that the event-driven engine makes in a second: at least, and at most.
 const FLAT_COLLISIONS: (f64, f64) = (4e5, 1e6);
 const DEEP_COLLISIONS: (f64, f64) = (2.5e5, 6e5);
@@ -71,16 +81,62 @@ fn mean_grains<V: Vector>(scenario: &Scenario<V>) -> f64 {
 /// Seconds of a run on one core, its recordings and its equilibration included. The constants are fitted
 /// to processor times of short single-threaded runs on one machine; another may differ by a factor of two.
 pub(super) fn seconds<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
-    let recording = recordings(scenario).made * mean_grains(scenario) * RECORDING;
+    let recording = recording_seconds(scenario);
+    let running = running_seconds(scenario)?;
+    Some(Estimate { least: running.least + recording, most: running.most + recording, ..running })
+}
+
+/// The same without the recordings.
+fn running_seconds<V: Vector>(scenario: &Scenario<V>) -> Option<Estimate> {
     if let Some(collisions) = estimate::collisions(scenario) {
         let (slow, fast) = if V::DIMENSION == 2 { FLAT_COLLISIONS } else { DEEP_COLLISIONS };
-        let (least, most) = (collisions.least / fast + recording, collisions.most / slow + recording);
+        let (least, most) = (collisions.least / fast, collisions.most / slow);
         return Some(Estimate { least, most, ..collisions });
     }
     let steps = estimate::steps(scenario)?;
     let before = estimate::steps_before_the_start(scenario);
-    let cost = |steps: f64| (steps + before) * seconds_per_step(scenario) + recording;
+    let cost = |steps: f64| (steps + before) * seconds_per_step(scenario);
     Some(Estimate { least: cost(steps.least), most: cost(steps.most), ..steps })
+}
+
+/// What all recordings take [s].
+fn recording_seconds<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let Recordings { made, full, .. } = recordings(scenario);
+    mean_grains(scenario) * (full * FULL_RECORDING + made * brief_recording(scenario))
+}
+
+/// What every grain costs in a recording that is not full [s].
+fn brief_recording<V: Vector>(scenario: &Scenario<V>) -> f64 {
+    let is_event_driven = scenario.engine.kind.is_event_driven();
+    BRIEF_RECORDING + if is_event_driven { SYNCHRONISATION } else { 0.0 }
+}
+
+/// What is affordable of the recordings of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Affordable {
+    /// Recordings, full or not.
+    pub(super) recordings: f64,
+    /// Those of them that are full.
+    pub(super) full: f64,
+    /// States inside the run.
+    pub(super) states: f64,
+}
+
+/// What takes no more than this `share` of the time of the run, or than is never too much: all recordings by what each of them
+/// costs; half as much more for what full ones cost beside that, and a quarter for states. Anything where that time cannot be told.
+pub(super) fn affordable<V: Vector>(scenario: &Scenario<V>, share: f64) -> Affordable {
+    let grains = mean_grains(scenario).max(1.0);
+    let (few, always) = ALWAYS_RECORDED;
+    let brief = brief_recording(scenario);
+    let always = always * (few / grains) * (few / grains) * (FULL_RECORDING + brief);
+    let seconds = running_seconds(scenario).map_or(f64::INFINITY, |running| share * running.least / grains);
+    let of = |part: f64, each: f64| always.max(part * seconds) / each;
+    let full = of(0.5, FULL_RECORDING + brief).max(FEWEST_RECORDINGS);
+    Affordable {
+        recordings: of(1.0, brief).max(full),
+        full,
+        states: of(0.25, RECORDINGS_PER_STATE * FULL_RECORDING),
+    }
 }
 
 fn seconds_per_step<V: Vector>(scenario: &Scenario<V>) -> f64 {
@@ -137,8 +193,8 @@ fn field_bytes<V: Vector>(scenario: &Scenario<V>) -> f64 {
 
 /// Bytes of all frames and fields of a run.
 fn pictures<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let made = recordings(scenario).made;
-    let of_every = |every: u32| (made / f64::from(every)).ceil();
+    let full = recordings(scenario).full;
+    let of_every = |every: u32| (full / f64::from(every)).ceil();
     of_every(scenario.record.frames_every) * POINT * mean_points(scenario)
         + of_every(scenario.record.fields_every) * field_bytes(scenario)
 }
@@ -148,8 +204,10 @@ fn pictures<V: Vector>(scenario: &Scenario<V>) -> f64 {
 pub(super) struct Recordings {
     /// As many as `[record]` asks for.
     pub(super) wanted: f64,
-    /// As many as there can be: one at the start and one per step.
+    /// As many as there can be, and are affordable: one at the start and one per step.
     pub(super) made: f64,
+    /// Those of them that are full.
+    pub(super) full: f64,
 }
 
 pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
@@ -158,9 +216,13 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
         Spacing::Every(every) => duration(scenario).map_or(1.0, |duration| pauses(duration, every)) + 1.0,
         Spacing::Ends => 2.0,
     };
+    let taken = scenario.affordable_frames().map_or(wanted, |frames| f64::from(frames) + 1.0);
     let most =
         estimate::steps(scenario).filter(|steps| !steps.open).map_or(f64::INFINITY, |steps| steps.most);
-    Recordings { wanted, made: wanted.min(most + 1.0) }
+    let made = taken.min(most + 1.0);
+    // Numbers are spread over the run and not over the recordings that can be made.
+    let full = made.min((taken / f64::from(scenario.affordable_full_every())).ceil());
+    Recordings { wanted, made, full }
 }
 
 /// Pauses of a run that is recorded at every multiple of `every` [time] and at its end: 0.9 is three times 0.3, though not so
@@ -171,7 +233,7 @@ fn pauses(duration: f64, every: f64) -> f64 {
 
 /// Size of the log before compression [bytes].
 pub(super) fn log_size<V: Vector>(scenario: &Scenario<V>) -> f64 {
-    let spread = f64::from(scenario.record.states);
+    let spread = f64::from(scenario.affordable_states());
     let every = scenario.record.state_every;
     let states =
         every.zip(duration(scenario)).map_or(spread, |(every, duration)| pauses(duration, every)) + 1.0;

@@ -27,6 +27,7 @@ mod reader;
 mod schema;
 mod suggest;
 mod tables;
+mod thinning;
 pub mod trust;
 mod walls;
 mod warnings;

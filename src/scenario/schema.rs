@@ -83,15 +83,19 @@ pub(super) const RECORD: &[&str] = &[
     "frames",
     "every",
     "spacing",
+    "share",
     "measures",
     "points",
     "states",
     "state_every",
     "from",
+    "full",
     "particles",
     "profiles",
     "fields",
 ];
+/// `record.full`.
+pub(super) const RECORD_FULL: &[&str] = &["every_nth"];
 /// `record.particles`.
 pub(super) const RECORD_PARTICLES: &[&str] = &["every_nth", "points"];
 /// `record.profiles`.
@@ -117,6 +121,7 @@ pub(super) const TABLES: &[(&str, &[&str])] = &[
     ("source", SOURCE),
     ("run", RUN),
     ("record", RECORD),
+    ("record.full", RECORD_FULL),
     ("record.particles", RECORD_PARTICLES),
     ("record.fields", RECORD_FIELDS),
 ];

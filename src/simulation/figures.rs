@@ -19,7 +19,7 @@ pub enum Kind {
 }
 
 /// Every key, in the order in which pages and messages name them. All other keys of a summary are figures of its scenario.
-pub const KEYS: [(&str, Kind); 43] = [
+pub const KEYS: [(&str, Kind); 44] = [
     ("scenario", Kind::Text),
     ("engine", Kind::Text),
     ("version", Kind::Text),
@@ -59,6 +59,7 @@ pub const KEYS: [(&str, Kind); 43] = [
     ("poured", Kind::Counter),
     ("removed", Kind::Counter),
     ("wall_seconds", Kind::Cost),
+    ("equilibration_seconds", Kind::Cost),
     ("advancing_seconds", Kind::Cost),
     ("particle_steps_per_second", Kind::Cost),
     ("events_per_second", Kind::Cost),

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "what was tried is worth knowing")]
 
+mod brief;
 mod changes;
 mod commands;
 mod crashes;

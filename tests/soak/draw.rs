@@ -270,5 +270,6 @@ fn run(dice: &mut Dice, frame: &Frame) -> String {
     };
     let frames = dice.one_of(&[0, 5, 24]);
     let states = dice.one_of(&[0, 2, 3]);
-    format!("[run]\n{limits}[record]\nframes = {frames}\nstates = {states}\npoints = 40\n")
+    let full = dice.one_of(&["", "full = { every_nth = 3 }\n"]);
+    format!("[run]\n{limits}[record]\nframes = {frames}\nstates = {states}\npoints = 40\n{full}")
 }

@@ -216,5 +216,6 @@ impl Case {
 fn record(dice: &mut Dice) -> String {
     let frames = dice.one_of(&[0, 3, 12]);
     let fields = if dice.chance(0.2) { "fields = [\"density\", \"collisions\"]\n" } else { "" };
-    format!("[record]\nframes = {frames}\nstates = {}\npoints = 20\n{fields}", 6 + dice.below(5))
+    let full = dice.one_of(&["", "full = { every_nth = 3 }\n"]);
+    format!("[record]\nframes = {frames}\nstates = {}\npoints = 20\n{fields}{full}", 6 + dice.below(5))
 }

@@ -13,6 +13,8 @@ const USUAL_POINTS: u32 = 20_000;
 /// What is recorded at which recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Channels {
+    /// Every so manieth recording is full.
+    pub(super) full_every: u32,
     /// Points of a frame, `None` for all.
     pub(super) points: Option<u32>,
     /// Every so manieth recording has a frame.
@@ -25,11 +27,12 @@ pub(super) struct Channels {
     pub(super) fields_every: u32,
 }
 
-/// Reads `points`, `particles`, `profiles` and `fields` of `record`.
+/// Reads `full`, `points`, `particles`, `profiles` and `fields` of `record`.
 pub(super) fn read(record: &Section<'_>) -> Option<Channels> {
+    let full = record.section("full", schema::RECORD_FULL);
     let particles = record.section("particles", schema::RECORD_PARTICLES);
     let profiles = record.section("profiles", schema::RECORD_PROFILES);
-    let sound = [("particles", &particles), ("profiles", &profiles)]
+    let sound = [("full", &full), ("particles", &particles), ("profiles", &profiles)]
         .iter()
         .all(|(key, section)| !record.has(key) || section.exists());
     let points = match record.has("points") && particles.has("points") {
@@ -39,10 +42,11 @@ pub(super) fn read(record: &Section<'_>) -> Option<Channels> {
         }
         false => points(if particles.has("points") { &particles } else { record }),
     };
-    let (frames_every, profiles_every) = (every(&particles), every(&profiles));
+    let (full_every, frames_every, profiles_every) = (every(&full), every(&particles), every(&profiles));
     let (fields, fields_every) = fields(record)?;
     Some(Channels {
         points: points.filter(|_| sound)?,
+        full_every: full_every?,
         frames_every: frames_every?,
         profiles_every: profiles_every?,
         fields,

@@ -11,6 +11,8 @@ use crate::simulation::schedule::ROUNDING;
 const MOST_RECORDINGS: u64 = 1_000_000;
 /// The most states of one run, beside the one at its end.
 const MOST_STATES: u64 = 10_000;
+/// The share of the time of a run that its recordings may take.
+const USUAL_SHARE: f64 = 0.05;
 
 /// Reads `[record]`; `limits` of the run as far as they are known.
 pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -> Option<RecordPlan> {
@@ -19,6 +21,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         return None;
     }
     let spacing = spacing(&record, limits);
+    let share = share(&record);
     let channels = channels::read(&record);
     let measures = measures(&record);
     let states = record.whole("states", 0, MOST_STATES).or(4);
@@ -33,9 +36,11 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         );
         return None;
     }
-    let Channels { points, frames_every, profiles_every, fields, fields_every } = channels?;
+    let Channels { full_every, points, frames_every, profiles_every, fields, fields_every } = channels?;
     Some(RecordPlan {
         spacing: spacing?,
+        share: share?,
+        full_every,
         points,
         frames_every,
         profiles_every,
@@ -43,6 +48,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         fields_every,
         measures: measures?,
         states: states? as u32,
+        usual_states: !record.has("states"),
         state_every: state_every?,
         from: from?,
     })
@@ -79,6 +85,19 @@ fn spacing(record: &Section<'_>, limits: Option<RunLimits>) -> Option<Spacing> {
         }
         (None, true, frames) => Some(Spacing::LogFrames(frames)),
         (None, false, frames) => Some(Spacing::Frames(frames)),
+    }
+}
+
+/// A number, or "all".
+fn share(record: &Section<'_>) -> Option<Option<f64>> {
+    const KEY: &str = "share";
+    match record.item(KEY).map(|item| item.as_str()) {
+        Some(Some("all")) => Some(None),
+        Some(Some(text)) => {
+            record.mistake(KEY, format!("\"{text}\" is not known; write a number from 0 to 1, or \"all\""));
+            None
+        }
+        _ => record.number(KEY, Bound::SHARE).or(USUAL_SHARE).map(Some),
     }
 }
 

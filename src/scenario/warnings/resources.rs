@@ -24,6 +24,20 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
             count_of(steps.most)
         ));
     }
+    warnings.extend(scenario.affordable_frames().map(|frames| {
+        format!(
+            "{frames} recordings are spread over the run in place of the {} that record.frames asks for, which would take longer \
+             than record.share lets them; record.share = \"all\" makes them all",
+            count_of(recordings.wanted - 1.0)
+        )
+    }));
+    let every = scenario.affordable_full_every();
+    if every > scenario.record.full_every {
+        warnings.push(format!(
+            "one of {every} recordings is full, with frame, profiles and state hash: more would take longer than record.share lets \
+             them; record.share = \"all\" makes all of them full"
+        ));
+    }
     let size = cost::log_size(scenario);
     if size > LARGE_LOG {
         let remedy = if key == "every" { "a larger record.every" } else { "fewer record.frames" };

@@ -1,0 +1,74 @@
+//! Runs of which only some recordings are full.
+
+use std::fs;
+
+use grainflow::record::reader::read_log;
+use grainflow::run::verify::Verdict;
+
+use super::logs::{Place, log_bytes, resume, rewritten, run_into, verified, verify};
+use super::{assert_goes_on, gas};
+
+const SELDOM: [&str; 2] = ["record.full={ every_nth = 4 }", "record.states=3"];
+
+#[test]
+fn a_recording_that_is_not_full_has_sums_and_no_hash() {
+    let place = Place::new();
+    for engine in ["hsmc", "event-driven"] {
+        let outcome = run_into(&place.path(engine), &gas(engine).with(&SELDOM));
+        let log = read_log(&outcome.folder.join("log.mcap")).unwrap();
+        let column = |name: &str| log.columns.iter().position(|column| column.name == name).unwrap();
+        let [energy, temperature, about_flow, pressure] =
+            ["kinetic_energy", "temperature", "granular_temperature", "pressure"].map(column);
+        assert_eq!(log.series.len(), 21, "{engine}");
+        for (k, (row, hash)) in log.series.iter().zip(&log.state_hashes).enumerate() {
+            let is_full = k % 4 == 0;
+            assert_eq!(hash.len(), if is_full { 64 } else { 0 }, "{engine}: {k}");
+            assert!(row[energy].is_finite() && row[temperature].is_finite(), "{engine}: {k}");
+            assert_eq!(row[about_flow].is_finite(), is_full, "{engine}: {k}");
+            // Of what happened since the one before; there is none before the first.
+            assert_eq!(row[pressure].is_finite(), is_full && k > 0, "{engine}: {k}");
+        }
+        assert_eq!(log.frames.len(), 6, "{engine}");
+        assert_eq!(verified(&outcome.folder).0.hashes, 6, "{engine}");
+        let all = run_into(&place.path(&format!("{engine}-all")), &gas(engine).with(&[]));
+        assert_eq!(all.summary["state_hash"], outcome.summary["state_hash"], "{engine}");
+        assert_eq!(all.summary["granular_temperature"], outcome.summary["granular_temperature"], "{engine}");
+    }
+}
+
+#[test]
+fn they_are_verified_and_go_on() {
+    for engine in ["cba", "hsmc", "event-driven"] {
+        assert_goes_on(engine, &gas(engine).with(&SELDOM), &[3, 6]);
+    }
+}
+
+#[test]
+fn a_run_that_is_interrupted_at_such_a_recording_goes_on() {
+    let place = Place::new();
+    let whole = run_into(&place.path("whole"), &gas("hsmc").with(&SELDOM));
+    // The end of this one is recording 10 of that.
+    let half = run_into(
+        &place.path("half"),
+        &gas("hsmc").with(&[&SELDOM[..], &["run.collisions_per_particle=3"]].concat()),
+    );
+    let longer = resume(&half.folder, &["run.collisions_per_particle=6"], &place.path("longer"));
+    assert_eq!(longer.summary["state_hash"], whole.summary["state_hash"]);
+    verified(&longer.folder);
+}
+
+#[test]
+fn a_hash_that_is_missing_where_the_run_has_one_is_found() {
+    let place = Place::new();
+    let outcome = run_into(&place.path("seldom"), &gas("hsmc").with(&SELDOM));
+    let forged = rewritten(
+        &log_bytes(&outcome),
+        |metadata| drop(metadata.remove("scenario_sha256")),
+        |text| text.replace("every_nth = 4", "every_nth = 2"),
+    );
+    let path = place.path("forged.mcap");
+    fs::write(&path, forged).unwrap();
+    let verdict = verify(&path).unwrap();
+    let Verdict::Different(extent, said) = verdict else { panic!("{verdict:?}") };
+    assert!(extent.hashes == 1 && said.contains("state hash"), "{extent:?}: {said}");
+}
