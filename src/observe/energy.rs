@@ -1,7 +1,9 @@
 //! `energy`: kinetic energy, temperatures, collisions and grains at every recording.
 
 use super::measure::{Column, Figure, Measure, Profile, Snapshot};
-use super::moments::{kinetic_energy, momentum, momentum_scale, rotational_energy, temperature};
+use super::moments::{
+    energy_and_temperature, kinetic_energy, momentum, momentum_scale, rotational_energy, temperature,
+};
 use super::samples::figure;
 use super::setting::Setting;
 use super::species_temperature;
@@ -47,9 +49,9 @@ impl<V: Vector> Energy<V> {
     fn sums(&mut self, snapshot: &Snapshot<'_, V>) -> Vec<f64> {
         self.remember_start(snapshot);
         let (gas, totals) = (snapshot.gas, snapshot.totals);
-        let temperature = if gas.is_empty() { f64::NAN } else { temperature(gas) };
-        let mut values =
-            vec![kinetic_energy(gas), temperature, totals.collisions_per_particle, gas.len() as f64];
+        let (energy, temperature) = energy_and_temperature(gas);
+        let temperature = if gas.is_empty() { f64::NAN } else { temperature };
+        let mut values = vec![energy, temperature, totals.collisions_per_particle, gas.len() as f64];
         values.extend(self.reduced_inertia.map(|z| rotational_energy(gas, z)));
         values
     }

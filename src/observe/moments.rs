@@ -85,6 +85,38 @@ pub fn temperature<V: Vector>(gas: &Gas<V>) -> f64 {
     squares / (gas.len() * V::DIMENSION) as f64
 }
 
+/// [`kinetic_energy`] and [`temperature`], in one look less at the grains.
+pub fn energy_and_temperature<V: Vector>(gas: &Gas<V>) -> (f64, f64) {
+    if gas.is_empty() || Mixture::of(gas).is_some() {
+        return (kinetic_energy(gas), temperature(gas));
+    }
+    let mass = gas.grain.mass;
+    let Both(squares, total) = sum(gas.velocities(), |v| Both(v.length_squared(), *v));
+    let mean = total * (1.0 / gas.len() as f64);
+    let thermal = mass * sum(gas.velocities(), |v| (*v - mean).length_squared());
+    (0.5 * mass * squares, thermal / (gas.len() * V::DIMENSION) as f64)
+}
+
+/// Two sums at a time.
+#[derive(Clone, Copy, Default)]
+struct Both<V>(f64, V);
+
+impl<V: Vector> Add for Both<V> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Both(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl<V: Vector> Sub for Both<V> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Both(self.0 - other.0, self.1 - other.1)
+    }
+}
+
 /// Volume (2D: area) of all grains [lengthᴰ].
 pub fn volume<V: Vector>(gas: &Gas<V>) -> f64 {
     match Mixture::of(gas) {
@@ -171,6 +203,7 @@ mod tests {
         assert_eq!((largest_speed(gas.velocities()), largest_speed::<DVec2>(&[])), (5.0, 0.0));
         // |v − v̄|² = 5 each; 2 · 10 / (2 · 2).
         assert_eq!(temperature(&gas), 5.0);
+        assert_eq!(energy_and_temperature(&gas), (26.0, 5.0));
     }
 
     #[test]
@@ -218,6 +251,7 @@ mod tests {
         };
         assert_eq!(with(1), with(2));
         assert_eq!(with(1), with(7));
+        assert_eq!(energy_and_temperature(&gas), (kinetic_energy(&gas), temperature(&gas)));
         // 150 000 squares of unit Gaussians: 1 ± √(2/150000).
         assert!((temperature(&gas) - 1.0).abs() < 4.0 * (2.0_f64 / 150_000.0).sqrt());
     }

@@ -190,12 +190,13 @@ impl Recorder {
             quantities.map(|one| field(one, simulation.gas(), simulation.cell_counts())).collect();
         let (measures, snapshot) = simulation.observation();
         let looks = &self.looks;
-        let (hash, ((values, profiles), frame)) = rayon::join(
-            || if shown.full { state_hash(snapshot.gas) } else { String::new() },
+        let picture = || frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
+        let ((hash, frame), (values, profiles)) = rayon::join(
             || {
-                let picture = || frame(snapshot.gas.time(), snapshot.gas.columns(), most_points);
-                (looks.take(measures, &snapshot, shown), shown.frame.then(picture))
+                let hash = if shown.full { state_hash(snapshot.gas) } else { String::new() };
+                (hash, shown.frame.then(picture))
             },
+            || looks.take(measures, &snapshot, shown),
         );
         self.writer.recording(&Recording {
             values: &values,

@@ -12,7 +12,7 @@ const MOST_RECORDINGS: u64 = 1_000_000;
 /// The most states of one run, beside the one at its end.
 const MOST_STATES: u64 = 10_000;
 /// The share of the time of a run that its recordings may take.
-const USUAL_SHARE: f64 = 0.05;
+const USUAL_SHARE: f64 = 0.04;
 
 /// Reads `[record]`; `limits` of the run as far as they are known.
 pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -> Option<RecordPlan> {
