@@ -13,6 +13,8 @@ const DENSEST_BY_INSERTION: [f64; 4] = [0.0, 0.0, 0.4, 0.3];
 const DRAWS: u32 = 20_000;
 /// Grains that look for places at the same time.
 const BATCH: usize = 1024;
+/// So many draws ahead a grain sends for those that it may meet.
+const AHEAD: usize = 2;
 
 /// Whether the grains of `scenario` are few enough to be put in one by one.
 pub(in crate::scenario) fn has_room<V: Vector>(scenario: &Scenario<V>) -> bool {
@@ -49,7 +51,11 @@ pub(super) fn places<V: Vector>(scenario: &Scenario<V>, diameters: &[f64]) -> Op
         let before = bins.len();
         let search = |&id: &usize| {
             let mut draws = Draws::of(scenario, id, diameters[id])?;
-            let place = draws.find(|&place| !overlaps(&bins, 0, id, place))?;
+            let mut ahead = draws.clone().skip(AHEAD);
+            let place = draws.find(|&place| {
+                ahead.next().into_iter().for_each(|place| bins.fetch_around(place));
+                !overlaps(&bins, 0, id, place)
+            })?;
             Some((draws, place))
         };
         let found: Vec<_> = batch.par_iter().map(search).collect();
@@ -66,6 +72,7 @@ pub(super) fn places<V: Vector>(scenario: &Scenario<V>, diameters: &[f64]) -> Op
 }
 
 /// Places that one grain draws, uniformly over the room of its centre, until it gives up.
+#[derive(Clone)]
 struct Draws<V> {
     low: V,
     room: V,
