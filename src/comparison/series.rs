@@ -39,11 +39,16 @@ pub(super) fn compared(entries: &[Entry], reference: usize, remarks: &mut Remark
     all
 }
 
-/// The column `y` of a log over its column `x`.
+/// The column `y` of a log over its column `x`. Where a recording is not full, what it does not have is no gap.
 fn sampled(log: &RunLog, x: &str, y: &str) -> Sampled {
     let place = |name: &str| log.columns.iter().position(|column| column.name == name);
     let (Some(x), Some(y)) = (place(x), place(y)) else { return Sampled::default() };
-    Sampled::new(log.series.iter().filter_map(|row| Some((*row.get(x)?, *row.get(y)?))))
+    let is_brief = |number: usize| log.state_hashes.get(number).is_some_and(String::is_empty);
+    let points = log.series.iter().enumerate().filter_map(|(number, row)| {
+        let (x, y) = (*row.get(x)?, *row.get(y)?);
+        (y.is_finite() || !is_brief(number)).then_some((x, y))
+    });
+    Sampled::new(points)
 }
 
 fn against(
@@ -232,4 +237,30 @@ fn clock<'a>(abscissa: &'a str, places: &[f64], collisions: &Sampled) -> (Vec<f6
     let rises =
         counted.iter().all(|count| count.is_finite()) && counted.windows(2).all(|pair| pair[0] < pair[1]);
     if abscissa == TIME && rises { (counted, COLLISIONS) } else { (places.to_vec(), abscissa) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observe::measure::Dimension;
+
+    #[test]
+    fn what_a_recording_between_full_ones_lacks_is_no_gap_and_what_is_not_defined_is_one() {
+        let column = |name: &str| Column { name: name.to_owned(), unit: Dimension::default() };
+        let nothing = f64::NAN;
+        let mut log = RunLog {
+            columns: vec![column(TIME), column("pressure")],
+            series: [[0.0, 1.0], [1.0, nothing], [2.0, 3.0], [3.0, nothing], [4.0, 5.0]]
+                .map(Vec::from)
+                .to_vec(),
+            state_hashes: ["a", "", "b", "c", "d"].map(str::to_owned).to_vec(),
+            ..RunLog::default()
+        };
+        let at = |log: &RunLog| sampled(log, TIME, "pressure").at(&[0.5, 1.0, 2.0, 2.5, 3.5], Path::Straight);
+        let found = at(&log);
+        assert_eq!(found[..3], [1.5, 2.0, 3.0]);
+        assert!(found[3].is_nan() && found[4].is_nan());
+        log.state_hashes[3].clear();
+        assert_eq!(at(&log), [1.5, 2.0, 3.0, 3.5, 4.5]);
+    }
 }

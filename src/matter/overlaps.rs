@@ -22,10 +22,10 @@ pub fn overlaps<V: Vector>(gas: &Gas<V>, fixed_walls: [[bool; 2]; 3]) -> u64 {
     gas.positions().iter().for_each(|&position| bins.insert(position));
     let of_grain = |(row, &position): (usize, &V)| {
         let mut number = 0;
-        bins.any_near(position, |other, distance_squared| {
+        // Those that come later: every pair once.
+        bins.any_near_since(row + 1, position, |other, distance_squared| {
             let contact = 0.5 * (diameters[row] + diameters[other]) * (1.0 - TOLERANCE);
-            // Every pair once.
-            number += u64::from(other < row && distance_squared < contact * contact);
+            number += u64::from(distance_squared < contact * contact);
             false
         });
         let reach = 0.5 * diameters[row] * (1.0 - TOLERANCE);

@@ -95,7 +95,7 @@ pub(super) fn plots(evidence: &Evidence<'_>) -> Vec<Plot> {
 fn against_time(evidence: &Evidence<'_>, column: usize, haff: Option<Haff>, label: String) -> Plot {
     let points = evidence.series(0, column);
     let mut plot = Plot {
-        title: "Granular temperature".to_owned(),
+        title: "Temperature".to_owned(),
         x_label: evidence.setup.time_label(),
         y_label: label,
         x_scale: scale_of_times(&points),
@@ -122,7 +122,7 @@ fn against_collisions(points: Vec<[f64; 2]>, haff: Option<Haff>, label: String) 
         return None;
     }
     let mut plot = Plot {
-        title: "Granular temperature against collisions".to_owned(),
+        title: "Temperature against collisions".to_owned(),
         x_label: "collisions per particle, 2C/N".to_owned(),
         y_label: label,
         y_scale: Scale::of_energy(&points),

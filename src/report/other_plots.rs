@@ -38,7 +38,7 @@ fn series(evidence: &Evidence<'_>, column: usize) -> Option<Plot> {
     let error = evidence.standard_error(&described.name);
     let is_steady = figures::is_steady(evidence, &described.name);
     if let Some(mean) = evidence.figure(&described.name).filter(|_| error.is_some() && is_steady) {
-        curves[0].name = "at every recording".to_owned();
+        curves[0].name = "at recordings".to_owned();
         let steady = [0.5 * (ends[0] + ends[1]), ends[1]].map(|t| [t, mean]).to_vec();
         let name = if evidence.trend(&described.name).is_some() { "steady mean" } else { "mean" };
         let name = format!("{name} {}", with_error(mean, error));

@@ -28,7 +28,7 @@ pub(super) fn last_good<'s, V: Vector>(
     loop {
         // The first run was looked at: its measures remember that.
         if run.timetable.wants_recording(&run.simulation) {
-            run.recording();
+            run.recording(false);
         }
         if run.timetable.wants_state(&run.simulation) {
             run.timetable.state_saved(&run.simulation);

@@ -53,14 +53,16 @@ impl<'s, V: Vector> Running<'s, V> {
         Running { looks: Looks::of(&mut simulation), simulation, timetable }
     }
 
-    /// Takes a recording, the one that is due if one is: its values, and whether it is a full one.
-    pub(super) fn recording(&mut self) -> (Vec<f64>, bool) {
+    /// Takes a recording, the one that is due if one is, a full one if that is or if the first run made it one, as it does with its
+    /// last: its values, and whether it is a full one.
+    pub(super) fn recording(&mut self, was_full: bool) -> (Vec<f64>, bool) {
         let Running { simulation, timetable, looks } = self;
         let mut shown = Shown::ALL;
         if timetable.is_recording_due(simulation) {
             shown = Shown::at(timetable.due(simulation), &simulation.scenario().record);
             timetable.recorded(simulation);
         }
+        shown.full |= was_full;
         let (measures, snapshot) = simulation.observation();
         let (values, _) = looks.take(measures, &snapshot, shown);
         if shown.fields {
@@ -167,8 +169,8 @@ impl<'s, V: Vector> Rerun<'s, V> {
     }
 
     /// Takes the recording that is due: names of the columns, their values, and whether it is a full one.
-    pub(super) fn recording(&mut self) -> (Vec<String>, Vec<f64>, bool) {
-        let (values, is_full) = self.now_mut().recording();
+    pub(super) fn recording(&mut self, was_full: bool) -> (Vec<String>, Vec<f64>, bool) {
+        let (values, is_full) = self.now_mut().recording(was_full);
         (self.now().looks.columns.iter().map(|column| column.name.clone()).collect(), values, is_full)
     }
 

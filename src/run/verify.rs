@@ -248,7 +248,7 @@ impl<V: Vector> Check<'_, V> {
         self.rerun.begin(None).map_err(End::Failed)?;
         let time = values.first().copied().unwrap_or(f64::NAN);
         self.reach(time, false)?;
-        let (columns, row, is_full) = self.rerun.recording();
+        let (columns, row, is_full) = self.rerun.recording(!hash.is_empty());
         let gas = self.rerun.gas();
         if hash.is_empty() && !is_full {
             let difference = self.observes_alike.then(|| self.first_column(values, &columns, &row)).flatten();

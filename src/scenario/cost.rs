@@ -4,7 +4,7 @@ use super::estimate::{self, Estimate};
 use super::model::{EngineKind, Scenario, Spacing};
 use crate::law::boundary::Face;
 use crate::observe::field::Quantity;
-use crate::simulation::schedule::ROUNDING;
+use crate::simulation::schedule::{Due, ROUNDING, Spread};
 use crate::space::Vector;
 
 /// Up to so many grains the columns stay in the caches of a processor.
@@ -14,8 +14,8 @@ const CACHED_GRAINS: f64 = 2e5;
 const FULL_RECORDING: f64 = 115e-9;
 const BRIEF_RECORDING: f64 = 5e-9;
 const SYNCHRONISATION: f64 = 200e-9;
-/// Grains of which this many full recordings are always made, a fifth of a second altogether; of twice as many a quarter of
-/// them, so that those of a large and short run do not take longer than it.
+/// Grains of which this many full recordings are always made, a fifth of a second altogether; of twice as many half of the recordings
+/// and a quarter of the full ones, so that those of a large and short run do not take longer than it.
 const ALWAYS_RECORDED: (f64, f64) = (1e4, 210.0);
 /// The fewest full recordings.
 const FEWEST_RECORDINGS: f64 = 4.0;
@@ -128,14 +128,15 @@ pub(super) fn affordable<V: Vector>(scenario: &Scenario<V>, share: f64) -> Affor
     let grains = mean_grains(scenario).max(1.0);
     let (few, always) = ALWAYS_RECORDED;
     let brief = brief_recording(scenario);
-    let always = always * (few / grains) * (few / grains) * (FULL_RECORDING + brief);
+    let always = always * (few / grains) * (FULL_RECORDING + brief);
     let seconds = running_seconds(scenario).map_or(f64::INFINITY, |running| share * running.least / grains);
-    let of = |part: f64, each: f64| always.max(part * seconds) / each;
-    let full = of(0.5, FULL_RECORDING + brief).max(FEWEST_RECORDINGS);
+    let of = |part: f64, always: f64, each: f64| always.max(part * seconds) / each;
+    let fewer = always * (few / grains);
+    let full = of(0.5, fewer, FULL_RECORDING + brief).max(FEWEST_RECORDINGS);
     Affordable {
-        recordings: of(1.0, brief).max(full),
+        recordings: of(1.0, always, brief).max(full),
         full,
-        states: of(0.25, RECORDINGS_PER_STATE * FULL_RECORDING),
+        states: of(0.25, fewer, RECORDINGS_PER_STATE * FULL_RECORDING),
     }
 }
 
@@ -219,10 +220,24 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Recordings {
     let taken = scenario.affordable_frames().map_or(wanted, |frames| f64::from(frames) + 1.0);
     let most =
         estimate::steps(scenario).filter(|steps| !steps.open).map_or(f64::INFINITY, |steps| steps.most);
-    let made = taken.min(most + 1.0);
+    let made = match scenario.record.spacing {
+        Spacing::LogFrames(_) if most.is_finite() => 1.0 + different_steps((taken - 1.0) as u32, most),
+        _ => taken.min(most + 1.0),
+    };
     // Numbers are spread over the run and not over the recordings that can be made.
     let full = made.min((taken / f64::from(scenario.affordable_full_every())).ceil());
     Recordings { wanted, made, full }
+}
+
+/// How many steps of so many end at one of the places of `frames` logarithmically spaced recordings.
+fn different_steps(frames: u32, steps: f64) -> f64 {
+    let spread = Spread::Logarithmic(frames);
+    let step = |number: u32| match spread.due(u64::from(number)) {
+        Due::Progress(place) => (place * steps).ceil(),
+        _ => f64::NAN,
+    };
+    let ends: Vec<f64> = (1..=frames).map(step).collect();
+    1.0 + ends.windows(2).filter(|pair| pair[0] < pair[1]).count() as f64
 }
 
 /// Pauses of a run that is recorded at every multiple of `every` [time] and at its end: 0.9 is three times 0.3, though not so

@@ -196,6 +196,8 @@ pub struct RecordPlan {
     /// Every so manieth recording is full, and the last: it has the state hash, what its channels ask for, and the quantities for
     /// which measures look at the neighbours of every grain.
     pub full_every: u32,
+    /// Whether nobody has asked for that.
+    pub usual_full: bool,
     /// Points of a frame: at most this many, `None` for all.
     pub points: Option<u32>,
     /// Frames are made at every so manieth recording if that is full, and at the end.

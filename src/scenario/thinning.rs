@@ -28,8 +28,9 @@ impl<V: Vector> Scenario<V> {
 
     /// Every so manieth recording is full: what the scenario says, or as many as are affordable where it says nothing.
     pub fn affordable_full_every(&self) -> u32 {
-        let usual = self.record.full_every;
-        let (1, Some(affordable)) = (usual, self.affordable()) else { return usual };
+        let Some(affordable) = self.affordable().filter(|_| self.record.usual_full) else {
+            return self.record.full_every;
+        };
         let wanted = match self.record.spacing {
             Spacing::Frames(frames) | Spacing::LogFrames(frames) => {
                 f64::from(self.affordable_frames().unwrap_or(frames))
@@ -64,6 +65,7 @@ impl<V: Vector> Scenario<V> {
         }
         if full_every > self.record.full_every {
             sets.push(format!("record.full.every_nth={full_every}"));
+            (self.record.full_every, self.record.usual_full) = (full_every, false);
         }
         if states < self.record.states {
             sets.push(format!("record.states={states}"));
@@ -71,7 +73,7 @@ impl<V: Vector> Scenario<V> {
         }
         if !sets.is_empty() {
             sets.push("record.share=all".to_owned());
-            (self.record.share, self.record.full_every) = (None, full_every);
+            self.record.share = None;
             self.source_text = changed(&self.source_text, sets);
         }
         self

@@ -216,7 +216,8 @@ mod tests {
         let all = ["record.points=all", "record.frames=4000", "particles.count=100000"];
         let large = warned("clustering", &all);
         assert!(large.contains("record.frames asks for 4001 recordings of about 527 steps"), "{large}");
-        let large = warned("clustering", &["record.points=all", "record.frames=4000", "run={steps=5000}"]);
+        let even = ["record.points=all", "record.frames=4000", "record.spacing=even", "run={steps=5000}"];
+        let large = warned("clustering", &even);
         assert!(large.contains("the log takes about 11"), "{large}");
     }
 

@@ -2,13 +2,17 @@
 
 use std::fs;
 
+use grainflow::record::index::LogIndex;
 use grainflow::record::reader::read_log;
 use grainflow::run::verify::Verdict;
 
 use super::logs::{Place, log_bytes, resume, rewritten, run_into, verified, verify};
 use super::{assert_goes_on, gas};
 
+/// Of 20 recordings and the one at the start.
 const SELDOM: [&str; 2] = ["record.full={ every_nth = 4 }", "record.states=3"];
+/// The last one would not be full but for being the last.
+const ODDLY: [&str; 2] = ["record.full={ every_nth = 7 }", "record.states=3"];
 
 #[test]
 fn a_recording_that_is_not_full_has_sums_and_no_hash() {
@@ -30,6 +34,9 @@ fn a_recording_that_is_not_full_has_sums_and_no_hash() {
         }
         assert_eq!(log.frames.len(), 6, "{engine}");
         assert_eq!(verified(&outcome.folder).0.hashes, 6, "{engine}");
+        let index = LogIndex::open(&outcome.folder.join("log.mcap")).unwrap();
+        assert!(!index.was_made() && index.frames() == 6, "{engine}");
+        assert_eq!((index.recording_of(1), index.recording_of(5)), (Some(4), Some(20)), "{engine}");
         let all = run_into(&place.path(&format!("{engine}-all")), &gas(engine).with(&[]));
         assert_eq!(all.summary["state_hash"], outcome.summary["state_hash"], "{engine}");
         assert_eq!(all.summary["granular_temperature"], outcome.summary["granular_temperature"], "{engine}");
@@ -40,6 +47,7 @@ fn a_recording_that_is_not_full_has_sums_and_no_hash() {
 fn they_are_verified_and_go_on() {
     for engine in ["cba", "hsmc", "event-driven"] {
         assert_goes_on(engine, &gas(engine).with(&SELDOM), &[3, 6]);
+        assert_goes_on(engine, &gas(engine).with(&ODDLY), &[3, 6]);
     }
 }
 
@@ -55,6 +63,17 @@ fn a_run_that_is_interrupted_at_such_a_recording_goes_on() {
     let longer = resume(&half.folder, &["run.collisions_per_particle=6"], &place.path("longer"));
     assert_eq!(longer.summary["state_hash"], whole.summary["state_hash"]);
     verified(&longer.folder);
+}
+
+#[test]
+fn what_comes_with_full_recordings_comes_as_seldom_as_it_should() {
+    let place = Place::new();
+    let sets = ["record.full={ every_nth = 4 }", "record.particles={ every_nth = 5 }"];
+    let outcome = run_into(&place.path("seldom"), &gas("hsmc").with(&sets));
+    let log = read_log(&outcome.folder.join("log.mcap")).unwrap();
+    let times = [0, 8, 16, 20].map(|row| log.series[row][0]);
+    assert_eq!(log.frames.iter().map(|frame| frame.time).collect::<Vec<_>>(), times);
+    verified(&outcome.folder);
 }
 
 #[test]

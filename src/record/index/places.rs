@@ -87,9 +87,8 @@ impl Places {
                             ticks.push(tick);
                         }
                         id if id == head.particles => {
-                            let recording = places.frames.len() as u32;
                             let time = tick as f64 / head.time_scale();
-                            places.frames.push(FramePlace { time, recording, spot });
+                            places.frames.push(FramePlace { time, recording: 0, spot });
                             frame_ticks.push(tick);
                         }
                         id if id == head.states => places.states.push(spot),
@@ -98,12 +97,17 @@ impl Places {
                 }
             }
         }
-        // Message n of the one belongs to message n of the other: in a log of which parts were lost, that is not so.
-        Ok(match frame_ticks == ticks {
-            true if tell_times(&ticks) => Indexed::Whole(places),
-            true => Indexed::WithoutTimes,
-            false => Indexed::Unfit,
-        })
+        // A frame belongs to the recording of the same tick: in a log of which parts were lost there may be none.
+        let is_there = |tick: &u64| ticks.binary_search(tick).ok();
+        let recordings: Option<Vec<usize>> = frame_ticks.iter().map(is_there).collect();
+        let Some(recordings) = recordings.filter(|_| ticks.is_sorted()) else { return Ok(Indexed::Unfit) };
+        if !tell_times(&ticks) {
+            return Ok(Indexed::WithoutTimes);
+        }
+        for (place, recording) in places.frames.iter_mut().zip(recordings) {
+            place.recording = recording as u32;
+        }
+        Ok(Indexed::Whole(places))
     }
 
     /// The chunk at `start` is the one that follows.

@@ -2,7 +2,7 @@
 
 use crate::scenario::bound::Bound;
 use crate::scenario::model::{RecordPlan, RunLimits, Spacing};
-use crate::scenario::reader::Section;
+use crate::scenario::reader::{Section, number_of};
 use crate::scenario::schema::{self, MEASURES};
 use crate::scenario::tables::channels::{self, Channels, names};
 use crate::simulation::schedule::ROUNDING;
@@ -41,6 +41,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         spacing: spacing?,
         share: share?,
         full_every,
+        usual_full: !record.has("full"),
         points,
         frames_every,
         profiles_every,
@@ -95,6 +96,10 @@ fn share(record: &Section<'_>) -> Option<Option<f64>> {
         Some(Some("all")) => Some(None),
         Some(Some(text)) => {
             record.mistake(KEY, format!("\"{text}\" is not known; write a number from 0 to 1, or \"all\""));
+            None
+        }
+        Some(None) if number_of(record.item(KEY)?).is_err() => {
+            record.mistake(KEY, "is no number; write one from 0 to 1, or \"all\"");
             None
         }
         _ => record.number(KEY, Bound::SHARE).or(USUAL_SHARE).map(Some),

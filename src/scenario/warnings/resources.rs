@@ -2,8 +2,9 @@
 
 use crate::machine::Machine;
 use crate::scenario::check::{bytes, count_of, spoken};
+use crate::scenario::cost::{self, Recordings};
+use crate::scenario::estimate;
 use crate::scenario::model::{Scenario, Spacing};
-use crate::scenario::{cost, estimate};
 use crate::space::Vector;
 
 /// Logs above this size are seldom meant [bytes].
@@ -17,27 +18,16 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
     let recordings = cost::recordings(scenario);
     let key = if matches!(scenario.record.spacing, Spacing::Every(_)) { "every" } else { "frames" };
     // The number of steps is an estimate, and may be a little short.
-    if let Some(steps) = estimate::steps(scenario).filter(|_| recordings.wanted > 1.2 * recordings.made) {
+    let is_thinned = scenario.affordable_frames().is_some();
+    let too_few = |steps: &estimate::Estimate| !steps.open && recordings.wanted > 1.2 * (steps.most + 1.0);
+    if let Some(steps) = estimate::steps(scenario).filter(|steps| !is_thinned && too_few(steps)) {
         warnings.push(format!(
             "record.{key} asks for {} recordings of about {} steps: every step will be recorded, none more often",
             count_of(recordings.wanted),
             count_of(steps.most)
         ));
     }
-    warnings.extend(scenario.affordable_frames().map(|frames| {
-        format!(
-            "{frames} recordings are spread over the run in place of the {} that record.frames asks for, which would take longer \
-             than record.share lets them; record.share = \"all\" makes them all",
-            count_of(recordings.wanted - 1.0)
-        )
-    }));
-    let every = scenario.affordable_full_every();
-    if every > scenario.record.full_every {
-        warnings.push(format!(
-            "one of {every} recordings is full, with frame, profiles and state hash: more would take longer than record.share lets \
-             them; record.share = \"all\" makes all of them full"
-        ));
-    }
+    warnings.extend(thinned(scenario, recordings));
     let size = cost::log_size(scenario);
     if size > LARGE_LOG {
         let remedy = if key == "every" { "a larger record.every" } else { "fewer record.frames" };
@@ -47,6 +37,27 @@ pub(super) fn recordings<V: Vector>(scenario: &Scenario<V>) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// Records that are fewer than is asked for.
+fn thinned<V: Vector>(scenario: &Scenario<V>, recordings: Recordings) -> Option<String> {
+    let states = scenario.affordable_states();
+    let is_less = scenario.affordable_frames().is_some()
+        || scenario.affordable_full_every() > scenario.record.full_every
+        || states < scenario.record.states;
+    is_less.then(|| {
+        format!(
+            "so that its records do not take longer than the run, there are about {} recordings, {} of them full (with frame, \
+             profiles, state hash and all columns), and {} before the end; record.share = \"all\" makes all that is asked for",
+            count_of(recordings.made),
+            count_of(recordings.full),
+            match states {
+                0 => "no state".to_owned(),
+                1 => "one state".to_owned(),
+                states => format!("{states} states"),
+            }
+        )
+    })
 }
 
 /// More time than anybody has.

@@ -111,8 +111,9 @@ function makePlot(parent, name, label, player) {
       pen.beginPath();
       let isDown = false;
       for (const [x, y] of curve) {
-        if (!Number.isFinite(y) || !Number.isFinite(x)) isDown = false;
-        else if (isDown) pen.lineTo(across(x), up(y));
+        // Recordings that are not full have no value in some columns: the line goes on to the next one.
+        if (!Number.isFinite(y) || !Number.isFinite(x)) continue;
+        if (isDown) pen.lineTo(across(x), up(y));
         else {
           pen.moveTo(across(x), up(y));
           isDown = true;
