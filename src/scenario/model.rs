@@ -193,26 +193,26 @@ pub struct RecordPlan {
     pub spacing: Spacing,
     /// Which share of the time of the run those may take that are spread over it; `None` for all of them, whatever they take.
     pub share: Option<f64>,
-    /// Every so manieth recording is full, and the last: it has the state hash, what its channels ask for, and the quantities for
+    /// Every n-th recording is full, and the last: it has the state hash, what its channels ask for, and the quantities for
     /// which measures look at the neighbours of every grain.
     pub full_every: u32,
-    /// Whether nobody has asked for that.
+    /// Whether the scenario does not state that number.
     pub usual_full: bool,
     /// Points of a frame: at most this many, `None` for all.
     pub points: Option<u32>,
-    /// Frames are made at every so manieth recording if that is full, and at the end.
+    /// Frames are made at every n-th recording, or the next full one, and at the end.
     pub frames_every: u32,
-    /// Profiles are stored at every so manieth recording if that is full, and at the end.
+    /// Profiles are stored at every n-th recording, or the next full one, and at the end.
     pub profiles_every: u32,
     /// Fields that are recorded where the engine has them.
     pub fields: Vec<Quantity>,
-    /// Fields are recorded at every so manieth recording if that is full, and at the end.
+    /// Fields are recorded at every n-th recording, or the next full one, and at the end.
     pub fields_every: u32,
     /// Names of the measures whose series and profiles are stored; `None` for all that apply and are cheap.
     pub measures: Option<Vec<String>>,
     /// Full-precision states during the run, beside the one at the end.
     pub states: u32,
-    /// Whether that is the usual number, which nobody has asked for.
+    /// Whether that is the default: the scenario states neither it nor an interval.
     pub usual_states: bool,
     /// One every so much time instead, beginning at 0 [time].
     pub state_every: Option<f64>,

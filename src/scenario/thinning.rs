@@ -26,7 +26,7 @@ impl<V: Vector> Scenario<V> {
         (affordable < frames).then_some(affordable)
     }
 
-    /// Every so manieth recording is full: what the scenario says, or as many as are affordable where it says nothing.
+    /// n, where every n-th recording is full: what the scenario says, or what is affordable where it says nothing.
     pub fn affordable_full_every(&self) -> u32 {
         let Some(affordable) = self.affordable().filter(|_| self.record.usual_full) else {
             return self.record.full_every;
@@ -38,7 +38,7 @@ impl<V: Vector> Scenario<V> {
             Spacing::Every(interval) => self.expected_duration().map_or(1.0, |duration| duration / interval),
             Spacing::Ends => 1.0,
         };
-        // One is at the start; half a recording too many is none.
+        // One of the full recordings is at the start, and rounding adds none.
         ((wanted - 0.5) / (affordable.full - 1.0)).ceil().clamp(1.0, RAREST) as u32
     }
 
@@ -158,5 +158,8 @@ mod tests {
         }
         let scenario = recorded("cooling", &[&LARGE[..], &["record.states=7"]].concat());
         assert!(scenario.source_text().contains("states = 7"));
+        let scenario = recorded("cooling", &[&LARGE[..], &["record.state_every=1.0"]].concat());
+        let text = scenario.source_text();
+        assert!(text.contains("state_every = 1.0") && !text.contains("states ="), "{text}");
     }
 }

@@ -29,7 +29,7 @@ fn a_recording_that_is_not_full_has_sums_and_no_hash() {
             assert_eq!(hash.len(), if is_full { 64 } else { 0 }, "{engine}: {k}");
             assert!(row[energy].is_finite() && row[temperature].is_finite(), "{engine}: {k}");
             assert_eq!(row[about_flow].is_finite(), is_full, "{engine}: {k}");
-            // Of what happened since the one before; there is none before the first.
+            // The pressure is that since the last full recording, which the first one lacks.
             assert_eq!(row[pressure].is_finite(), is_full && k > 0, "{engine}: {k}");
         }
         assert_eq!(log.frames.len(), 6, "{engine}");
@@ -52,10 +52,9 @@ fn they_are_verified_and_go_on() {
 }
 
 #[test]
-fn a_run_that_is_interrupted_at_such_a_recording_goes_on() {
+fn a_later_end_leads_to_the_state_of_the_longer_run() {
     let place = Place::new();
     let whole = run_into(&place.path("whole"), &gas("hsmc").with(&SELDOM));
-    // The end of this one is recording 10 of that.
     let half = run_into(
         &place.path("half"),
         &gas("hsmc").with(&[&SELDOM[..], &["run.collisions_per_particle=3"]].concat()),

@@ -13,7 +13,7 @@ const USUAL_POINTS: u32 = 20_000;
 /// What is recorded at which recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Channels {
-    /// Every so manieth recording is full.
+    /// Every n-th recording is full.
     pub(super) full_every: u32,
     /// Points of a frame, `None` for all.
     pub(super) points: Option<u32>,

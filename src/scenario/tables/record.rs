@@ -49,7 +49,7 @@ pub(in crate::scenario) fn read(root: &Section<'_>, limits: Option<RunLimits>) -
         fields_every,
         measures: measures?,
         states: states? as u32,
-        usual_states: !record.has("states"),
+        usual_states: !record.has("states") && !record.has("state_every"),
         state_every: state_every?,
         from: from?,
     })
